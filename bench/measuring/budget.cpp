@@ -141,11 +141,11 @@ void Budget::plan(std::vector<RowRun>& rows, const Entry& samples, std::size_t f
                                 seconds_text(needed_s()), seconds_text(std::max(0.0, left_s())), seconds_text(seconds_),
                                 budget_text(1.25 * (now() - start_s_ + needed_s()))));
     if (alive() == 1 && needed_s() > left_s())
-        say(fmt::format("--budget: one row alone takes about {}, and {} is left; it is measured all the same",
+        say(fmt::format("--budget: even one row takes about {}, but {} is left; it is measured anyway",
                         seconds_text(needed_s()), seconds_text(std::max(0.0, left_s()))));
 }
 
-/// A sample of several passes has one more, which is launched alone, and up to one more than it needs.
+/// A sample of several passes has one more, which is launched by itself, and up to one more than it needs.
 double Budget::Entry::need_s() const
 {
     if (samples == 0 || views == 0) return views_left * view_s;
@@ -240,7 +240,7 @@ bool Budget::skip_slowest(double affordable_s, bool among_references)
     return true;
 }
 
-/// Null where there is none.
+/// Null if there is none.
 Budget::Entry* Budget::slowest(bool among_references)
 {
     Entry* found = nullptr;

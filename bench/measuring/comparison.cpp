@@ -12,7 +12,7 @@ namespace tetrace {
 
 namespace {
 
-/// The API that a GPU's other APIs are compared with, where it has the row.
+/// The API that a GPU's other APIs are compared with, if it has the row.
 constexpr const char* preferred_on_gpus = "cuda";
 
 std::vector<std::size_t> hardware_of(const std::vector<RowRecord>& rows)
@@ -23,7 +23,7 @@ std::vector<std::size_t> hardware_of(const std::vector<RowRecord>& rows)
     return physical_devices(devices);
 }
 
-/// The row's reference, which may be the row itself; null where there is none.
+/// The row's reference, which may be the row itself; null if there is none.
 const RowRecord* find_reference(const std::vector<RowRecord>& rows, const std::vector<std::size_t>& hardware,
                                 std::size_t index)
 {

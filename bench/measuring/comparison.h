@@ -21,7 +21,7 @@ struct Comparison {
 /// The row's rate over reference's. Precondition: both have samples.
 [[nodiscard]] Comparison compare_rates(const RowRecord& reference, const RowRecord& row);
 
-/// "[0.95, 1.03]"; empty if there is no interval.
+/// "[0.95, 1.03]"; empty without an interval.
 [[nodiscard]] std::string interval_text(const Comparison& comparison);
 
 /// The reference of each row, row by row: the same kernel on the same scene and the same hardware (see
@@ -46,7 +46,7 @@ struct Contenders {
 struct PaidBuild {
     enum class When { at_once, later, never, unclear };
     When when = When::never;
-    double rays = 0;      ///< of later: after so many
+    double rays = 0;      ///< of later: after this many
     double tracing_s = 0; ///< of later: seconds that the row takes for them
 };
 template <>

@@ -16,7 +16,7 @@ std::optional<double> quotient(std::uint64_t steps, std::uint64_t rays)
     return static_cast<double>(steps) / static_cast<double>(rays);
 }
 
-/// Empty where the wall clock was not read for every sample.
+/// Empty if the wall clock was not read for every sample.
 void add_wall(Figures& figures, const RowRecord& row)
 {
     if (row.wall_samples_s.size() != row.samples_s.size()) return;

@@ -29,16 +29,16 @@ struct Figures {
 
 /// Bytes that a step of the walk loads from its tet's record, on average (docs/spec/devices.md, W7): three or four
 /// vertices and a face. An estimate of the memory traffic: memory transfers whole lines, and caches hold some of them.
-/// 0 for Embree's layout, which has no steps.
+/// 0 for Embree's layout, which does not have steps.
 [[nodiscard]] double bytes_per_step(const KernelId& kernel);
 
-/// Steps per ray; empty where there are no rays, or the structure has no steps.
+/// Steps per ray; empty without rays, or if the structure does not have steps.
 struct MeanSteps {
     std::optional<double> all, hit, miss;
 };
 [[nodiscard]] MeanSteps mean_steps(const RayTotals& totals);
 
-/// Of a row's rays, from 0 to 1; empty if there are no rays, or the number is not known.
+/// Of a row's rays, from 0 to 1; empty without rays, or if the number is not known.
 struct RayShares {
     std::optional<double> enter; ///< the domain's box
     std::optional<double> hit;

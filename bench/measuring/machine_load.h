@@ -18,7 +18,7 @@ struct MachineLoad {
 };
 
 /// Seconds of work of all kinds that a text such as /proc/stat shows for the given processors, in units of a tick.
-/// Empty where it shows none of them.
+/// Empty if it shows none of them.
 [[nodiscard]] std::optional<double> busy_ticks(std::string_view text, const std::set<unsigned>& processors);
 
 /// A process as a text such as /proc/1/stat shows it.
@@ -27,7 +27,7 @@ struct ProcessTimes {
     double ticks = 0;          ///< of work of its own, and of those of its children that have ended
     std::uint64_t started = 0; ///< ticks after the system did
 };
-/// Empty where the text shows none.
+/// Empty if the text shows none.
 [[nodiscard]] std::optional<ProcessTimes> process_times(std::string_view text);
 
 /// Processor time of this process, in all its threads, and of its children.
@@ -37,7 +37,7 @@ struct ProcessTimes {
 class LoadMeter {
 public:
     LoadMeter();
-    /// Empty where the system does not tell, or no time has passed.
+    /// Empty if the system does not tell, or no time has passed.
     [[nodiscard]] std::optional<MachineLoad> load() const;
 
 private:

@@ -9,13 +9,13 @@ namespace tetrace {
 
 namespace {
 
-/// The system counts work in hundredths of a second: a load of less than this is not told from none.
+/// The system counts work in hundredths of a second: a load of less than this cannot be distinguished from none.
 constexpr double shortest_stretch_s = 2;
 
 double positive_from(const nlohmann::json& number)
 {
     const double value = amount_from(number);
-    if (value <= 0) throw std::domain_error("a pulse takes more than 0 s");
+    if (value <= 0) throw std::domain_error("calibration must take more than 0 s");
     return value;
 }
 

@@ -26,11 +26,11 @@ public:
     /// Seconds since the run's first process began, without the time between its processes.
     [[nodiscard]] double now() const { return clock_(); }
 
-    /// What was read since the last call, for the journal's entry; null where nothing was. with_load: also the load of
+    /// What was read since the last call, for the journal's entry; null if nothing was. with_load: also the load of
     /// a stretch so short that it would rather be read later.
     [[nodiscard]] nlohmann::json new_readings(bool with_load);
 
-    /// Of all that new_readings() has told, weighted by time; empty where the system does not tell.
+    /// Of all that new_readings() has told, weighted by time; empty if the system does not tell.
     [[nodiscard]] std::optional<MachineLoad> load() const;
 
     static constexpr const char* entry_key = "machine"; ///< of its readings in an entry of the journal

@@ -46,7 +46,7 @@ struct Pass {
     double kernel_s = 0, wall_s = 0, download_s = 0;
 };
 
-/// What happens in a pass besides.
+/// What else happens in a pass.
 struct Besides {
     std::function<void(double)> tell_progress;
     std::function<void(const ViewBatch&, std::span<const Hit>)> see = {}; ///< given each launch's hits
@@ -263,7 +263,7 @@ void require_printed(const BenchmarkFlags& flags)
     std::cout.flush();
     if (flags.format && !std::cout)
         throw Error(ErrorKind::invalid_input, "writing the output of --benchmark_format to standard output failed; "
-                                              "check that there is space left, or use --benchmark_out FILE");
+                                              "check that the disk is not full, or use --benchmark_out FILE");
 }
 
 /// All are closed before the first is opened again.

@@ -18,7 +18,7 @@ struct Measurement {
     unsigned runs = 1;
     bool lowered = false; ///< fewer than asked for, because of the budget
     double wall_s = 0;
-    std::optional<MachineLoad> load; ///< while warming up and timing; empty where the system does not tell
+    std::optional<MachineLoad> load; ///< while warming up and timing; empty if the system does not tell
     std::vector<Pulse> pulses;       ///< of the host and of each GPU
 };
 
@@ -35,7 +35,7 @@ struct Measurement {
 /// throttling during each sample (see Sampler). Meanwhile the pulse is taken, and rows learn what it says of their
 /// rates. Writes the file of --benchmark_out. With options.runs above 1 all of it is done that often, each time with
 /// new sessions. After an interrupt, rows keep the samples that they have. host: its pulse; openmp::pulse_s() where it
-/// is empty. find_monitor: of a row's GPU. Throws Error{invalid_input} where that file, or what Google Benchmark
+/// is empty. find_monitor: of a row's GPU. Throws Error{invalid_input} if that file, or what Google Benchmark
 /// prints, cannot be written.
 [[nodiscard]] Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, const BenchmarkFlags& flags,
                                        Budget& budget = no_budget(), const Pulses::Work& host = {},

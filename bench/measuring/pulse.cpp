@@ -170,9 +170,9 @@ std::string disturbance_text(std::optional<double> pulse_ratio, const MachineLoa
 {
     std::string text;
     if (pulse_ratio && *pulse_ratio >= noisy_pulse)
-        text = fmt::format("the pulse beside its samples took {:.2f} times its fastest", *pulse_ratio);
+        text = fmt::format("calibration during its samples took {:.2f} times its fastest", *pulse_ratio);
     if (load != nullptr && !load->is_quiet())
-        text += fmt::format("{}others used {:.2f} of {} processors", text.empty() ? "" : "; ", load->others,
+        text += fmt::format("{}other processes used {:.2f} of {} CPUs", text.empty() ? "" : "; ", load->others,
                             load->processors);
     return text;
 }

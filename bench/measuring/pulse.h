@@ -11,7 +11,8 @@
 
 namespace tetrace {
 
-/// How long a fixed short piece of work took, again and again through a run: a yardstick that only the machine moves.
+/// How long a fixed short piece of work took, repeated throughout a run: only the machine changes it. Printed as
+/// calibration.
 struct Pulse {
     struct Reading {
         double at_s;    ///< when it began, by the clock of the samples
@@ -83,15 +84,15 @@ private:
     std::optional<double> last_s_; ///< of the last reading; empty: one is due
 };
 
-/// What the pulse of the host does: openmp::pulse_s() by so many threads.
+/// The calibration work of the host: openmp::pulse_s() by this many threads.
 [[nodiscard]] Pulses::Work host_pulse(unsigned threads);
 
-/// The median of three times that a row's session takes for a job, for its GPU's pulse. Empty where the row is not
+/// The median of three times that a row's session takes for a job, for its GPU's pulse. Empty if the row is not
 /// timed or fails, which is then its outcome.
 [[nodiscard]] std::optional<double> median_launch_s(RowRun& row, const std::function<TraceJob()>& job,
                                                     const Clock& clock);
 
-/// Why a row's rate is not to be trusted although its samples agree; empty where nothing speaks against it.
+/// Why a row's rate is not to be trusted although its samples agree; empty if nothing speaks against it.
 /// pulse_ratio: the median over its samples of Pulse::ratio_beside(). load: null for rows that do not run on the host.
 [[nodiscard]] std::string disturbance_text(std::optional<double> pulse_ratio, const MachineLoad* load);
 

@@ -35,7 +35,7 @@ Path path_of(const RowRun& row, std::uint32_t view, std::uint32_t x, std::uint32
     return walk_path(row.packed->data, kernel, job_of(row, view), x, y);
 }
 
-/// The device's own walk; empty where the device can no longer trace it.
+/// The device's own walk; empty if the device can no longer trace it.
 Path own_path(const RowRun& row, const DifferingRay& ray)
 {
     if (row.packed == nullptr || row.session == nullptr || !leaves_tets(row)) return {};

@@ -66,7 +66,7 @@ std::unique_ptr<benchmark::BenchmarkReporter> make_reporter(const std::string& f
 #pragma GCC diagnostic pop
     if (reporter == nullptr)
         throw Error(ErrorKind::usage,
-                    "Google Benchmark has no format '" + format + "'; accepted: console, json or csv");
+                    "Google Benchmark does not support format '" + format + "'; accepted: console, json or csv");
     reporter->SetOutputStream(&stream);
     return reporter;
 }

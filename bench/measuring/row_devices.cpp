@@ -44,7 +44,7 @@ void attempt(RowDevice& device, const char* what, const Work& work)
 
 void measure_device(RowDevice& device, Backend& backend, const SessionOptions& options)
 {
-    attempt(device, "yardstick", [&] {
+    attempt(device, "microbenchmark", [&] {
         if (device.yardstick) return;
         device.yardstick = yardstick_of(backend, device.index, options);
         if (!device.yardstick && runs_on_host(device.device))

@@ -19,19 +19,20 @@ struct RowDevice {
     std::vector<MathMode> math; ///< of its rows
     std::optional<Yardstick> yardstick;
     std::map<MathMode, SelfTest> self_tests;
-    std::string problem; ///< why a yardstick or a self-test is missing; empty where nothing failed, or nothing applies
+    std::string
+        problem; ///< why a microbenchmark or a self-test is missing; empty if nothing failed, or nothing applies
 };
 
 /// The devices of all opened rows, each once: grouped by hardware, emulations last within each group.
 [[nodiscard]] std::vector<RowDevice> devices_of(const std::vector<RowRecord>& rows);
 
-/// Measures yardstick and self-test of each device (see device_abilities.h). Where an API on the host has no yardstick
-/// of its own, openmp's is used; a yardstick that a device already has is kept. A device that fails keeps the reason as
-/// its problem; only Error{interrupted} is thrown.
+/// Runs microbenchmark and self-test of each device (see device_abilities.h). If an API on the host lacks a
+/// microbenchmark of its own, openmp's is used; one that a device already has is kept. A device that fails keeps the
+/// reason as its problem; only Error{interrupted} is thrown.
 void measure_devices(std::vector<RowDevice>& devices, const SessionOptions& options,
                      const std::vector<Backend*>& backends = all_backends());
 
-/// The index of the row's device in the list; empty where the row was not opened.
+/// The index of the row's device in the list; empty if the row was not opened.
 [[nodiscard]] std::optional<std::size_t> device_of(const RowRecord& row, const std::vector<RowDevice>& devices);
 
 /// The row's estimated bandwidth over copy bandwidths of its device.
@@ -40,7 +41,7 @@ struct CopyShares {
     double of_ceiling;          ///< of the level of its memory that holds the row's scene
     double ceiling_bytes_per_s; ///< that level's
 };
-/// Empty where the row has no estimated bandwidth, or its device no yardstick.
+/// Empty if the row lacks an estimated bandwidth, or its device a microbenchmark.
 [[nodiscard]] std::optional<CopyShares> copy_shares(const RowRecord& row, const std::vector<RowDevice>& devices);
 
 } // namespace tetrace

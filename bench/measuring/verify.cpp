@@ -215,7 +215,7 @@ private:
         }
     }
 
-    /// Made only where a row needs it: it builds its own BVH.
+    /// Made only if a row needs it: it builds its own BVH.
     GivenOracle& given_oracle()
     {
         if (!given_oracle_) given_oracle_.emplace(scene_->loaded().scene.mesh, threads_);
@@ -280,7 +280,7 @@ void verify_again(Verifier& verifier, RowRun& row)
 {
     if (traced(row)->totals.rays == 0)
         throw Error(ErrorKind::unsupported,
-                    fmt::format("no primary ray hits, so that there is no ray of kind {}", name_of(row.key.rays)));
+                    fmt::format("no primary ray hits, so rays of kind {} cannot be made", name_of(row.key.rays)));
     if (verifier.trace(row, 0) != traced(row)->view_hashes.front())
         throw Error(ErrorKind::wrong_result, fmt::format("the hits of view {} changed when it was traced again",
                                                          row.scene->view_numbers().front()));
@@ -298,7 +298,7 @@ std::vector<Outcome> outcomes_of(const std::vector<RowRun*>& rows)
     return outcomes;
 }
 
-/// Of an interrupted run: rows lose what they have of this view, and if it is the first, they have no answer.
+/// In an interrupted run: rows lose what they have of this view, and if it is the first, they have no hits.
 void end_before_view(const std::vector<RowRun*>& rows, const std::vector<Outcome>& before, SceneWork& scene,
                      std::size_t view)
 {

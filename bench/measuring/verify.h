@@ -14,7 +14,7 @@ struct SeenImage {
     const RowRun& row;
     std::size_t view; ///< index in SceneWork::views()
     std::span<const Hit> hits;
-    std::span<const Hit> reference; ///< openmp's; empty where there was nothing to compare
+    std::span<const Hit> reference; ///< openmp's; empty if there was nothing to compare
     const ImageVerdict& verdict;
 };
 /// Called after each image.
@@ -23,7 +23,7 @@ using ImageSeen = std::function<void(const SeenImage&)>;
 /// How much the row's answers may differ from openmp's: what its device's self-test allows.
 [[nodiscard]] Allowance allowance_of(const RowRun& row);
 
-/// openmp's row that the row must agree with; empty where there is nothing to compare with.
+/// openmp's row that the row must agree with; empty if there is nothing to compare with.
 [[nodiscard]] std::optional<RowKey> reference_of(const RowKey& key);
 
 /// One scene's verification, image by image, for callers that visit the images in their own order.
@@ -41,7 +41,7 @@ public:
     [[nodiscard]] std::uint64_t trace(RowRun& row, std::size_t view);
     [[nodiscard]] std::span<const Hit> hits() const; ///< of the last verify() or trace()
     [[nodiscard]] std::span<const Hit>
-    reference() const; ///< openmp's, of the last verify(); empty where there was nothing to compare
+    reference() const; ///< openmp's, of the last verify(); empty if there was nothing to compare
 
 private:
     class Parts;

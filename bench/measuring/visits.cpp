@@ -24,7 +24,7 @@ openmp::RunFunction* counting_function(const RowKey& key)
     return on_reference(key) ? openmp::find_function(openmp::counting_kernels(), key.kernel) : nullptr;
 }
 
-/// Visits in place of tet and steps; empty where nothing counts them.
+/// Visits in place of tet and steps; empty if nothing counts them.
 std::vector<std::uint32_t> counted_output(const RowRun& row, std::size_t view, std::span<const Hit> hits,
                                           unsigned threads)
 {

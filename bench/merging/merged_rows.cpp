@@ -23,7 +23,7 @@ std::vector<RowRecord> rows_of(const ShardResult& shard, bool searches)
     return searches ? read_search_rows(shard.result) : read_rows(shard.result);
 }
 
-/// What the whole run finds out again, or has no part of.
+/// What the whole run finds out again, or does not have.
 void forget_answers(RowRecord& row)
 {
     row.samples_s.clear();
@@ -111,7 +111,7 @@ void add_answers(RowRecord& row, const Views& views)
         if (traced(row) == nullptr) return;
         const json& rows = entry->at("rows");
         if (!rows.contains(name))
-            throw Error(ErrorKind::usage, fmt::format("merging shards: view {} has no answers of {}", view, name));
+            throw Error(ErrorKind::usage, fmt::format("merging shards: view {} lacks hits of {}", view, name));
         ImageOutcome outcome = outcome_from_json(rows[name]);
         if (const auto* record = std::get_if<ImageRecord>(&outcome)) std::get<Traced>(row.outcome).add(record->verdict);
         if (auto* skipped = std::get_if<Skipped>(&outcome)) row.outcome = *skipped;
@@ -129,7 +129,7 @@ void add_walks(Traced& whole, const Traced& part)
     if (is_same(whole.verdicts.first_wrong, part.verdicts.first_wrong)) whole.walk_of_wrong = part.walk_of_wrong;
 }
 
-/// A sample traces all views once: sample by sample, the shards' sum. Where a budget took fewer of one shard, as few.
+/// A sample traces all views once: sample by sample, the shards' sum. If a budget took fewer of one shard, as few.
 void add_samples(RowRecord& row, const std::vector<std::vector<RowRecord>>& shards)
 {
     std::vector<const RowRecord*> parts;
@@ -194,7 +194,7 @@ std::vector<nlohmann::json> merged_entries(const std::vector<ShardResult>& shard
         for (json entry : shard.journal.entries) {
             const bool is_view = entry.contains("view"), is_batch = entry.contains("batch");
             if (!is_view && !is_batch) {
-                // Of a device's yardstick and a row's set-up, the first shard's.
+                // Of a device's microbenchmark and a row's set-up, the first shard's.
                 const std::string what = entry.contains("setup") ? "setup" : "yardstick";
                 if (known.insert(what + entry.value(what, "")).second) others.push_back(std::move(entry));
                 continue;

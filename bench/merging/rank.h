@@ -17,16 +17,16 @@ struct Rank {
     [[nodiscard]] Shard shard() const { return {number + 1, size}; }
 };
 
-/// The value of a variable of the environment; null where it is not set.
+/// The value of a variable of the environment; null if it is not set.
 using Environment = std::function<const char*(const char*)>;
 
-/// A name of the process that started this one and the other ranks of its machine; empty where it is not known.
+/// A name of the process that started this one and the other ranks of its machine; empty if it is not known.
 using LauncherName = std::function<std::string()>;
 
-/// What Open MPI (OMPI_COMM_WORLD_*), launchers with PMI (PMI_*) and Slurm's srun (SLURM_*) say; empty where none of
-/// them started more than this one process. A batch script of Slurm is no rank: only srun's steps have a step's number.
-/// A launcher with PMI outside Slurm names no launch: TETRACE_LAUNCH does, or `launcher` where all ranks are on this
-/// machine (MPI_LOCALNRANKS). Throws Error{usage} where a variable has no such number, or nothing names the launch:
+/// What Open MPI (OMPI_COMM_WORLD_*), launchers with PMI (PMI_*) and Slurm's srun (SLURM_*) say; empty if none of
+/// them started more than this one process. A batch script of Slurm is not a rank: only srun's steps have a step's
+/// number. A launcher with PMI outside Slurm names no launch: TETRACE_LAUNCH does, or `launcher` where all ranks are on
+/// this machine (MPI_LOCALNRANKS). Throws Error{usage} if a variable lacks such a number, or nothing names the launch:
 /// then the results of an earlier one could be taken for those of this one.
 [[nodiscard]] std::optional<Rank> rank_of(const Environment& environment, const LauncherName& launcher);
 

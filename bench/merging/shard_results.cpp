@@ -21,7 +21,7 @@ std::string text_at(const ShardResult& shard, const char* key)
     return shard.result.section().at(key).text();
 }
 
-/// What a key of the heads is in both, where it differs.
+/// What a key of the heads is in both, if it differs.
 void require_same(const ShardResult& a, const ShardResult& b, const char* what, const std::string& in_a,
                   const std::string& in_b)
 {
@@ -37,7 +37,7 @@ void require_same_heads(const ShardResult& a, const ShardResult& b)
                  fmt::format("'{}'", fmt::join(b.arguments, " ")));
 }
 
-/// A scene of which one shard has no view is in the others alone.
+/// A scene of which one shard has no view is only in the others.
 void require_same_scenes(const ShardResult& a, const ShardResult& b)
 {
     for (const ResultScene& scene : a.result.scenes)
@@ -111,11 +111,11 @@ ShardResult read_shard(const std::filesystem::path& path)
     shard.result = read_result(path);
     const auto head = shard.result.section().find("shard");
     if (!head)
-        refuse(fmt::format("'{}' is no shard's result: 'tetrace {} --shard K/N' writes one", path.string(),
+        refuse(fmt::format("'{}' is not a shard's result: 'tetrace {} --shard K/N' writes one", path.string(),
                            shard.result.head.verb));
     const auto number_at = [&](const char* key) {
         const ResultValue value = head->at(key);
-        if (value.count() < 1 || value.count() > max_shards) value.reject("is no number of a shard");
+        if (value.count() < 1 || value.count() > max_shards) value.reject("is not the number of a shard");
         return static_cast<unsigned>(value.count());
     };
     shard.shard = {number_at("number"), number_at("of")};

@@ -17,7 +17,7 @@ struct ShardResult {
     JournalFile journal;
     Shard shard;
     std::vector<std::string> arguments; ///< the command line that all shards share
-    std::string job;                    ///< as Rank::job; empty where the shard was no rank
+    std::string job;                    ///< as Rank::job; empty if the shard was not a rank
 
     /// "shard 2/4 ('b.json')".
     [[nodiscard]] std::string name() const;
@@ -35,7 +35,7 @@ struct ShardResult {
 [[nodiscard]] ShardResult read_shard(const std::filesystem::path& result);
 
 /// The shards of one run, in the order of their numbers.
-/// Throws Error{usage} naming the shards and both values where one is missing or doubled, or where they differ in their
+/// Throws Error{usage} naming the shards and both values if one is missing or doubled, or if they differ in their
 /// number, verb, version, commit, compiler, flags, options, scenes or rows, or are not of this program's commit.
 [[nodiscard]] std::vector<ShardResult> read_shards(const std::vector<std::filesystem::path>& results);
 

@@ -14,7 +14,7 @@ namespace tetrace {
 /// as a journal next to the result, with the entries that `reproduce` writes. Does nothing for a whole run.
 class ViewJournal {
 public:
-    /// options: whose result has a file, where they are of a shard.
+    /// options: whose result has a file, if they are of a shard.
     explicit ViewJournal(const Options& options) : options_(&options) {}
 
     void see(const SeenImage& image);

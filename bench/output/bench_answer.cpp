@@ -151,8 +151,8 @@ std::string apis_text(const BenchResult& result)
 
 std::string load_text(const std::optional<MachineLoad>& load)
 {
-    if (!load) return "nothing is known of the load while measuring";
-    return fmt::format("others used {:.2f} of {} processors while measuring, load average {:.1f}", load->others,
+    if (!load) return "the load while measuring is not known";
+    return fmt::format("other processes used {:.2f} of {} CPUs while measuring, load average {:.1f}", load->others,
                        load->processors, load->average);
 }
 
@@ -160,7 +160,7 @@ std::string pulses_text(const std::vector<Pulse>& pulses)
 {
     std::string text;
     for (const Pulse& pulse : pulses)
-        text += fmt::format("; the pulse of {}, taken {} times, at most {:.2f} of its fastest",
+        text += fmt::format("; calibration of {}: {} runs, slowest {:.2f}x the fastest",
                             pulse.of == "host" ? "the host" : pulse.of, pulse.readings.size(), pulse.ratio());
     return text;
 }
@@ -203,8 +203,8 @@ std::string trust_text(const Steadiness& all)
         fmt::format("{}{}; {} of {} rows noisy", load_text(all.load), pulses_text(all.pulses), all.noisy, all.timed);
     if (all.disturbed == all.timed || (all.load && !all.load->is_quiet()))
         return what + ": do not trust these rates; measure again on a quieter machine.";
-    if (all.disturbed > 0) return what + ": do not trust those; measure again on a quieter machine.";
-    return what + (2 * all.noisy > all.timed ? ": trust only what intervals tell." : ".");
+    if (all.disturbed > 0) return what + ": do not trust the noisy ones; measure again on a quieter machine.";
+    return what + (2 * all.noisy > all.timed ? ": trust only differences that the intervals confirm." : ".");
 }
 
 } // namespace tetrace

@@ -4,13 +4,13 @@
 
 namespace tetrace {
 
-/// What a run found, in three lines: the fastest row of each scene; CDT beside BVH, and each API beside openmp; whether
-/// to trust the rates. Empty where nothing was timed.
+/// What a run found, in three lines: the fastest row of each scene; CDT compared with BVH, and each API with openmp;
+/// whether to trust the rates. Empty if nothing was timed.
 [[nodiscard]] Sheet answer_of(const BenchResult& result);
 
 /// What says whether a run's rates are to be trusted.
 struct Steadiness {
-    std::optional<MachineLoad> load = {}; ///< empty where the system does not tell
+    std::optional<MachineLoad> load = {}; ///< empty if the system does not tell
     std::vector<Pulse> pulses = {};
     std::size_t timed = 0, noisy = 0, disturbed = 0; ///< rows
 

@@ -59,7 +59,7 @@ std::string share_sentences(const std::string& scene, const std::vector<RowRecor
     return text;
 }
 
-/// How many steps a ray of each kind takes in the scene; the same for all its rows of one method.
+/// How many steps per ray each kind takes in the scene; the same for all its rows of one method.
 std::string steps_sentences(const std::string& scene, const std::vector<RowRecord>& rows)
 {
     std::string text;
@@ -69,9 +69,8 @@ std::string steps_sentences(const std::string& scene, const std::vector<RowRecor
         const MeanSteps mean = result != nullptr ? mean_steps(result->totals) : MeanSteps{};
         if (!mean.all || !told.insert(row->key.rays).second) continue;
         text += row->key.rays == RayKind::primary ? "" : fmt::format("{}: ", name_of(row->key.rays));
-        text += fmt::format("{:.2f} steps a ray", *mean.all);
-        if (mean.hit && mean.miss)
-            text += fmt::format(": {:.2f} where it hits, {:.2f} where not", *mean.hit, *mean.miss);
+        text += fmt::format("{:.2f} steps per ray", *mean.all);
+        if (mean.hit && mean.miss) text += fmt::format(": {:.2f} per hit, {:.2f} per miss", *mean.hit, *mean.miss);
         text += "\n";
     }
     return text;
@@ -85,7 +84,7 @@ std::string visits_sentences(const std::string& scene, const std::vector<RowReco
         const Traced* result = traced(*row);
         if (result == nullptr || result->visits.rays == 0) continue;
         const auto rays = static_cast<double>(result->visits.rays);
-        text += fmt::format("{}{}: {:.1f} nodes and {:.1f} triangles a ray", text.empty() ? "" : "; ",
+        text += fmt::format("{}{}: {:.1f} nodes and {:.1f} triangles per ray", text.empty() ? "" : "; ",
                             kernel_title(row->key), static_cast<double>(result->visits.nodes) / rays,
                             static_cast<double>(result->visits.triangles) / rays);
     }
@@ -93,15 +92,14 @@ std::string visits_sentences(const std::string& scene, const std::vector<RowReco
 }
 
 const char* const rate_columns =
-    "Mrays/s: throughput, with the views of a sample in flight together. x openmp (x cuda and so on): rate over that "
-    "of the same kernel with openmp, on a GPU with cuda, on the same hardware; medians, with {}. x best BVH: the same "
-    "over the fastest BVH on the device, named below. x single: rate over that of Embree's single rays. build paid: "
-    "after so many billion rays, and so many seconds of tracing them, building the tets has paid against the fastest "
-    "BVH, both builds counted. of copy: what a "
-    "step loads, times steps, over the bandwidth of copies, on the row's device, in the level of memory that holds the "
-    "scene. spread: interquartile range over median, "
-    "noisy above 5 %. noisy, too: the pulse, a fixed piece of work repeated through the run, took 1.25 times its "
-    "fastest, or others used more than a tenth of the processors.";
+    "Mrays/s: throughput, with the views of a sample in flight together. x openmp (x cuda and so on): rate over "
+    "that of the same kernel with openmp, on a GPU with cuda, on the same hardware; medians, with {}. x best BVH: "
+    "the same over the fastest BVH on the device, named below. x single: rate over that of Embree's single rays. "
+    "build paid: the billions of rays, and the seconds of tracing them, after which building the tets has paid off "
+    "against the fastest BVH, both builds counted. of copy: what a step loads, times steps, over the bandwidth of "
+    "copies, on the row's device, in the level of memory that holds the scene. spread: interquartile range over "
+    "median, noisy above 5 %. noisy, too: the pulse, a fixed piece of work repeated through the run, took 1.25 "
+    "times its fastest, or others used more than a tenth of the processors.";
 
 /// What the intervals of ratios are of.
 std::string interval_meaning(unsigned runs)
@@ -112,13 +110,11 @@ std::string interval_meaning(unsigned runs)
 }
 
 const char* const time_columns =
-    "compile (with the building of Embree's BVH, or a driver's) and upload are paid once; first: wall of the first "
-    "pass, in which devices compile what they left; then, for all views, kernel: device seconds; launch: wall less "
-    "kernel, launching and waiting; download: hits to the host; wall: launch to end. latency: kernel of one view that "
-    "is "
-    "launched alone; fixed: what each launch costs, by the line through launches of one view and of all, if it is "
-    "above "
-    "the noise. Medians of the samples but for download.";
+    "compile (including building Embree's BVH, or a driver's) and upload happen once; first: wall time of the first "
+    "pass, in which devices compile what is left; then, for all views, kernel: device seconds; launch: wall minus "
+    "kernel, launching and waiting; download: hits to the host; wall: launch to end. latency: kernel of one view "
+    "launched alone; fixed: cost of each launch, by the line through launches of one view and of all, if it is "
+    "above the noise. Medians of the samples, except for download.";
 
 Sheet closing_lines(const BenchResult& result)
 {
@@ -209,13 +205,13 @@ std::string verdict_sentence(const std::vector<RowRecord>& rows)
 {
     const Verdicts sum = all_verdicts(rows);
     if (sum.rays == 0) return "nothing.";
-    std::string text = fmt::format("{} rays, all by exact arithmetic: {} agree, {} ties", with_commas(sum.rays),
+    std::string text = fmt::format("{} rays, all with exact arithmetic: {} agree, {} ties", with_commas(sum.rays),
                                    with_commas(sum.agreed), with_commas(sum.ties));
     if (sum.ties > 0) text += fmt::format(" (by curves at most {:.1e} from their rays)", sum.max_tie_distance);
     if (sum.offset > 0)
-        text += fmt::format(", {} right for the offset origins that BVHs start from", with_commas(sum.offset));
-    return text + fmt::format(", {} settled for us, {} wrong, {} lost.", with_commas(sum.settled),
-                              with_commas(sum.wrong), with_commas(sum.lost));
+        text += fmt::format(", {} right for the offset origins from which BVHs start", with_commas(sum.offset));
+    return text + fmt::format(", {} settled, {} wrong, {} lost.", with_commas(sum.settled), with_commas(sum.wrong),
+                              with_commas(sum.lost));
 }
 
 Sheet failure_lines(const std::vector<RowRecord>& rows)

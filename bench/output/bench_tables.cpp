@@ -25,7 +25,7 @@ std::vector<std::size_t> by_device(const BenchResult& result)
 std::string heading_of(const RowRecord& row, const std::vector<RowDevice>& devices)
 {
     if (!device_of(row, devices)) return "not run";
-    if (row.device.kind == DeviceKind::emulated) return "emulated by the processor, not to be ranked with GPUs";
+    if (row.device.kind == DeviceKind::emulated) return "emulated on the CPU, not to be ranked with GPUs";
     return fmt::format("{} ({})", row.device.name, name_of(row.device.kind));
 }
 

@@ -37,7 +37,7 @@ std::string path_text(const char* title, const Path& path)
     return wrapped(text, 110, 2);
 }
 
-/// Where two walks diverge; empty where they do not.
+/// Where two walks diverge; empty if they do not.
 std::string parting_text(const Path& ours, const Path& openmps)
 {
     if (ours.empty() || openmps.empty()) return {};

@@ -67,7 +67,7 @@ std::vector<std::string> device_sentences(const ResultComparison& comparison)
     return sentences;
 }
 
-/// A value of the section `tetrace`; null where the result has none there.
+/// A value of the section `tetrace`; null if the result has none there.
 nlohmann::json recorded(const ResultFile& file, const char* pointer)
 {
     const nlohmann::json::json_pointer place(pointer);
@@ -87,9 +87,9 @@ std::string differences_text(const ResultComparison& comparison)
                               {"/flags", "the compiler's flags"},
                               {"/label", "the label"},
                               {"/host/cpu", "the processor"},
-                              {"/host/family", "the processor's family"},
-                              {"/host/model", "the processor's model"},
-                              {"/host/stepping", "the processor's stepping"},
+                              {"/host/family", "the CPU's family"},
+                              {"/host/model", "the CPU's model"},
+                              {"/host/stepping", "the CPU's stepping"},
                               {"/host/system", "the system"},
                               {"/host/threads", "the threads that the process may use"},
                               {"/threads", "the threads that it used"},
@@ -200,21 +200,21 @@ std::string promise_text(const ResultComparison& comparison)
     const std::size_t compared = comparison.count(RowOutcome::compared);
     const double error = comparison.error();
     std::string text = fmt::format("rates of B over those of A, by medians: above 1, B is faster; in brackets the "
-                                   "interval, of samples. If nothing changed, "
-                                   "the chance that any of these rows is called FASTER or SLOWER is at most {:.2g} %",
+                                   "interval from the samples. If nothing changed, the chance that any of these "
+                                   "rows is called FASTER or SLOWER is at most {:.2g} %",
                                    100 * error);
     if (error > 1.000001 * comparison_error || error == 0)
-        text += fmt::format("; {} samples a row and more, for {} rows, bring it to 1 %", samples_needed(compared),
+        text += fmt::format("; {} or more samples per row, for {} rows, reduce it to 1 %", samples_needed(compared),
                             compared);
-    return text + ". What differs between runs, apart from noise, no interval knows: the tolerance is for that.";
+    return text + ". Runs also differ in ways that no interval shows: the tolerance is for that.";
 }
 
 std::string verdicts_text(double tolerance)
 {
     return fmt::format(
-        "SAME: the interval lies within the tolerance, {:.3f} to {:.3f}. FASTER, SLOWER: it does not hold "
-        "1. UNSURE: it does, and reaches beyond the tolerance, or there are fewer than {} samples, which give no "
-        "interval; more would tell. NOISY: the machine itself changed, by its pulse.",
+        "SAME: the interval is within the tolerance, {:.3f} to {:.3f}. FASTER, SLOWER: it does not contain 1. "
+        "UNSURE: it contains 1 and exceeds the tolerance, or there are fewer than {} samples, which give no "
+        "interval; more samples would decide. NOISY: the machine's own speed changed, as calibration shows.",
         1 / (1 + tolerance), 1 + tolerance, min_samples);
 }
 
@@ -260,8 +260,8 @@ void add_search_note(Sheet& sheet, const ResultComparison& comparison)
 {
     const auto is_search = [](const ComparedRow& row) { return row.name().starts_with("search/"); };
     if (std::ranges::any_of(comparison.rows, is_search))
-        sheet.labelled("Searches", "Rows that begin with search/ are exit searches alone (Table 5); their rates are in "
-                                   "millions of searches a second.");
+        sheet.labelled("Searches", "Rows that begin with search/ are exit searches (Table 5); their rates are in "
+                                   "millions of searches per second.");
 }
 
 Table flat_rows(const ResultComparison& comparison)

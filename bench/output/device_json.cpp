@@ -112,7 +112,7 @@ json row_device_json(const RowDevice& device)
 
 namespace {
 
-/// As many as this program has room for.
+/// As many as this program can hold.
 decltype(Yardstick::copies) copies_from(const ResultValue& device)
 {
     decltype(Yardstick::copies) copies{};

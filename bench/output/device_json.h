@@ -19,12 +19,12 @@ namespace tetrace {
 
 [[nodiscard]] SelfTest self_test_from(const ResultValue& value);
 
-/// A device that rows ran on, with its yardstick and self-tests.
+/// A device that rows ran on, with its microbenchmark and self-tests.
 [[nodiscard]] nlohmann::json row_device_json(const RowDevice& device);
 
 [[nodiscard]] RowDevice row_device_from(const ResultValue& value);
 
-/// Sets a result's `load` and `pulses`, where they are known.
+/// Sets a result's `load` and `pulses`, if they are known.
 void set_steadiness(nlohmann::json& section, const std::optional<MachineLoad>& load, const std::vector<Pulse>& pulses);
 
 } // namespace tetrace

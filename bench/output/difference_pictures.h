@@ -19,7 +19,7 @@ public:
     /// Makes the folder. Throws Error{invalid_input} naming it where it cannot be made.
     explicit DifferencePictures(std::filesystem::path folder);
 
-    /// Writes nothing where the image equals openmp's. Throws as PictureWriter::write() does.
+    /// Writes nothing if the image equals openmp's. Throws as PictureWriter::write() does.
     void see(const SeenImage& image);
     [[nodiscard]] const std::vector<std::filesystem::path>& files() const { return files_; }
 

@@ -10,7 +10,7 @@ namespace tetrace {
 /// How a test case ended.
 enum class CaseOutcome { passed, failed, error, skipped };
 
-/// A test case that is no row. The device's label and driver become properties of the suite.
+/// A test case that is not a row. The device's label and driver become properties of the suite.
 struct JunitCase {
     std::string backend, label, device, driver;
     std::string name;
@@ -24,7 +24,7 @@ struct JunitCase {
 /// without any version, "tetrace.vulkan.llvmpipe"; versions and self-tests are properties of the suite, by device.
 /// failed: whether the row fails the check (a method's own flaws may pass). Wrong rows have a failure element, errors
 /// an error element, unsupported and skipped rows a skipped element, each with its reason; cell and hash are the test's
-/// output. problem: why the check itself failed; it becomes a test case of its own, in error; none where it is empty.
+/// output. problem: why the check itself failed; it becomes a test case of its own, in error; none if it is empty.
 [[nodiscard]] std::string junit_xml(const std::vector<RowRecord>& rows, const std::vector<bool>& failed,
                                     const std::string& problem = {});
 

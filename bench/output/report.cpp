@@ -28,7 +28,7 @@ Format format_of_file(const Options& options)
     if (ending == ".md") return Format::markdown;
     if (ending == ".txt") return Format::table;
     throw Error(ErrorKind::usage,
-                fmt::format("--out: the form of '{}' cannot be told from its ending; use .json, .csv, .md or .txt, or "
+                fmt::format("--out: the extension of '{}' does not name a format; use .json, .csv, .md or .txt, or "
                             "add --format",
                             options.out->string()));
 }

@@ -17,7 +17,7 @@ struct Report {
 };
 
 /// Fails early where deliver() would fail: the file's ending does not determine the form, or the file cannot be
-/// written; and where a shard has no JSON file, which alone can be merged. Throws Error{usage} or Error{invalid_input}
+/// written; and if a shard has no JSON file, since only that can be merged. Throws Error{usage} or Error{invalid_input}
 /// naming the file.
 void check_output(const Options& options);
 
@@ -25,8 +25,8 @@ void check_output(const Options& options);
 /// `out` is one of the inputs, even under another name.
 void check_not_an_input(const std::filesystem::path& out, const std::vector<std::filesystem::path>& inputs);
 
-/// Leaves no new file behind. Throws Error{invalid_input} naming the option, the file and the system's reason where the
-/// file cannot be written.
+/// Leaves no new file. Throws Error{invalid_input} naming the option, the file and the system's reason if the file
+/// cannot be written.
 void check_writable(const char* option, const std::filesystem::path& path);
 
 /// Writes the report where --format and --out say: to standard output, the file, or both. With --anonymous, writes it
@@ -34,7 +34,7 @@ void check_writable(const char* option, const std::filesystem::path& path);
 /// Throws Error{invalid_input} naming the file and the system's reason.
 void deliver(const Options& options, const Report& report);
 
-/// Throws Error{usage} where --columns names a column that none of the tables has; the message lists those that they
+/// Throws Error{usage} if --columns names a column that none of the tables has; the message lists those that they
 /// have.
 void check_columns(const Options& options, const std::vector<std::string>& keys);
 

@@ -43,7 +43,7 @@ std::uint64_t hash_from(const ResultValue& value)
     return std::stoull(value.hash(), nullptr, 16);
 }
 
-/// 0 is no hash, but that of what is not known.
+/// 0 means that the hash is not known.
 auto hash_or_nothing(std::uint64_t Traced::*member)
 {
     return both([=](const Traced& trace) { return trace.*member == 0 ? json() : json(hash_text(trace.*member)); },
@@ -149,8 +149,8 @@ std::string_view status_name(const RowRecord& row)
     return name_of(status_of(row));
 }
 
-/// Rays of the packets that Embree splits the row's packets into, since the processor has no wider ones; nothing where
-/// it does not.
+/// Rays of the packets that Embree splits the row's packets into, since the CPU lacks wider ones; nothing if it does
+/// not.
 json narrower_packets(const RowRecord& row)
 {
     const unsigned native = row.device.group_width;
@@ -159,7 +159,7 @@ json narrower_packets(const RowRecord& row)
     return is_split && traced(row) != nullptr ? json(native) : json();
 }
 
-/// With facts for which the terminal has no column: the reason of a flawed row, that its tree is a fall-back or its
+/// With facts that are not columns on the terminal: the reason of a flawed row, that its tree is a fall-back or its
 /// packets are narrower, and that a row is noisy, which is not ok.
 std::string status_text(const RowFacts& facts)
 {
@@ -181,7 +181,7 @@ json compile_and_build_s(const RowRecord& row)
     return seconds > 0 ? json(seconds) : json();
 }
 
-/// Reads what there is only of answers that were compared with openmp's.
+/// Reads what only hits that were compared with openmp's have.
 auto if_compared(std::uint64_t Traced::*member)
 {
     return both([=](const Traced& trace) { return trace.compared ? json(trace.*member) : json(); },
@@ -251,7 +251,7 @@ std::vector<RowField> identity_fields()
     };
 }
 
-/// Its speed alone; comparison_fields() follow.
+/// Only its speed; comparison_fields() follow.
 std::vector<RowField> rate_fields()
 {
     return {
@@ -374,7 +374,7 @@ std::vector<RowField> time_fields()
         {"times", "noisy", &Figures::noisy,
          recorded(R"({ "type": "boolean" })", optional, "spread above 5 %, or disturbed"), csv("noisy")},
         {"times", "pulse", &RowRecord::pulse_ratio,
-         recorded("positive", optional, "the pulse beside a sample over its fastest: the median over the samples"),
+         recorded("positive", optional, "calibration during a sample over its fastest: the median over the samples"),
          csv("pulse", "", 3)},
         {"times", "disturbed", if_any(&RowRecord::disturbance),
          recorded("line", optional, "what else than the spread speaks against the rate")},

@@ -23,7 +23,7 @@ struct Claim {
 };
 
 // The rules below turn intervals into verdicts; the caller words the claims. A rule never decides on missing data:
-// where an interval crosses the boundary, or has no bound, the claim is not testable.
+// if an interval crosses the boundary, or is without bounds, the claim is not testable.
 
 /// "There are none." A single one refutes it, and only a count of all proves it: a sample without any may have missed
 /// some.
@@ -31,12 +31,11 @@ struct Claim {
 /// "There are some": the opposite.
 [[nodiscard]] ClaimVerdict judge_some(const Estimate& count);
 /// "The first is less than each of the others", with separate estimates: the intervals must not meet; refuted by one of
-/// the others that lies nowhere above the first. Not testable without others.
+/// the others that is nowhere above the first. Not testable without others.
 [[nodiscard]] ClaimVerdict judge_less(const Estimate& first, const std::vector<Estimate>& others);
-/// "Every ratio is above the boundary": all intervals above it; refuted by one that lies wholly below.
+/// "Every ratio is above the boundary": all intervals above it; refuted by one that is wholly below.
 [[nodiscard]] ClaimVerdict judge_above(const std::vector<Estimate>& ratios, double boundary);
-/// "Every number is 0, give or take the reach": all intervals within the reach; refuted by one that lies wholly
-/// outside.
+/// "Every number is 0, give or take the reach": all intervals within the reach; refuted by one that is wholly outside.
 [[nodiscard]] ClaimVerdict judge_within(const std::vector<Estimate>& numbers, double reach);
 /// "Both hold": refuted where one of them is.
 [[nodiscard]] ClaimVerdict judge_both(ClaimVerdict a, ClaimVerdict b);
@@ -45,7 +44,7 @@ struct Claim {
 
 [[nodiscard]] nlohmann::json claim_json(const Claim& claim);
 
-/// "1.25 [1.1, 1.4]"; the value alone where there are no bounds.
+/// "1.25 [1.1, 1.4]"; only the value if there are no bounds.
 [[nodiscard]] std::string estimate_text(const Estimate& estimate);
 
 } // namespace tetrace

@@ -104,7 +104,7 @@ ImageVerdict verdict_from(const json& object)
 constexpr std::optional<double> GpuState::*told[] = {&GpuState::clock_mhz, &GpuState::memory_clock_mhz,
                                                      &GpuState::power_w, &GpuState::temperature_c};
 
-/// A state is its numbers in the order of `told`, null where it has none, and why it was throttled.
+/// A state is its numbers in the order of `told`, null if it has none, and why it was throttled.
 json gpu_readings_json(const GpuReadings& readings)
 {
     json states = json::array();
@@ -172,7 +172,7 @@ Enum choice_from(const json& number, Enum first, Enum last)
     return static_cast<Enum>(value);
 }
 
-/// Throws std::domain_error where a count of rays exceeds their number.
+/// Throws std::domain_error if a count of rays exceeds their number.
 void require_possible(const ImageRecord& record)
 {
     const ImageVerdict& verdict = record.verdict;

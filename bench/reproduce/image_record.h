@@ -20,12 +20,12 @@ struct ImageRecord {
     std::uint64_t chained_hash = 0;     ///< of the hits of all views up to this one, as Traced::hit_hash
     std::uint64_t lost_at_cap = 0;      ///< lost rays whose walk took the maximum number of steps: a cycle
     FlatWalks flawed, any;              ///< of wrong and lost rays; of rays over the whole image
-    std::vector<double> samples_s;      ///< device seconds of a pass, sample by sample; empty where nothing was timed
+    std::vector<double> samples_s;      ///< device seconds of a pass, sample by sample; empty if nothing was timed
     std::vector<double> wall_samples_s; ///< launch to end, by the host's clock
     /// When each sample began and ended, by the clock of MachineWatch; empty without one.
     std::vector<std::pair<double, double>> sampled_s = {};
     std::uint32_t passes = 1;            ///< of a sample
-    std::optional<GpuReadings> gpu = {}; ///< of a GPU that tells something
+    std::optional<GpuReadings> gpu = {}; ///< of a GPU that reports any
 };
 
 /// A row's result for a view: the image, or the failure that ended the row.

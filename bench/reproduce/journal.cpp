@@ -43,7 +43,7 @@ std::string line_of(std::string_view entry, std::uint64_t checksum)
     return fmt::format("{}{}{}{}}}", before_checksum, hash_text(checksum), before_entry, entry);
 }
 
-/// The text of a line's entry; empty where the line is none of a journal.
+/// The text of a line's entry; empty if the line is none of a journal.
 std::string_view entry_of(std::string_view line)
 {
     const std::size_t place = before_checksum.size() + 16 + before_entry.size();
@@ -51,7 +51,7 @@ std::string_view entry_of(std::string_view line)
                                                       : std::string_view();
 }
 
-/// Before lines had checksums, the head stood in the first line itself.
+/// Before lines had checksums, the head was the first line itself.
 bool is_old(std::string_view text)
 {
     return text.starts_with(R"({"journal":)");
@@ -102,8 +102,8 @@ std::string whole_lines(std::string text)
     return text;
 }
 
-/// The value of a text; of none where it is no JSON, or nested deeper than any entry: the library writes a value by a
-/// call a level, so that a deep one would exhaust the stack.
+/// The value of a text; none if it is not JSON, or nested deeper than any entry: the library writes a value by a call a
+/// level, so that a deep one would exhaust the stack.
 json parsed_entry(std::string_view text)
 {
     constexpr int deepest = 64;
@@ -194,8 +194,8 @@ void Journal::open_and_lock()
     const auto require_regular = [&] {
         if (!S_ISREG(found.st_mode))
             throw Error(ErrorKind::invalid_input,
-                        fmt::format("the journal '{}' is no regular file but a folder, a pipe "
-                                    "or a device; name another file with --out",
+                        fmt::format("the journal '{}' is not a regular file but a folder, a pipe or a device; name "
+                                    "another file with --out",
                                     path_.string()));
     };
     if (::stat(path_.c_str(), &found) == 0) require_regular();
@@ -218,7 +218,7 @@ bool Journal::read(const json& head, bool resume)
     if (text.empty()) return false;
     if (is_old(text)) {
         if (!resume && text.ends_with("\n" + finished_line.dump() + "\n")) return false;
-        throw Error(ErrorKind::usage, fmt::format("'{}' is the journal of an older tetrace, whose lines have no "
+        throw Error(ErrorKind::usage, fmt::format("'{}' is the journal of an older tetrace, whose lines lack "
                                                   "checksums; end that run with its program, or remove the file to "
                                                   "begin anew",
                                                   path_.string()));
@@ -274,7 +274,7 @@ JournalFile read_journal(const std::filesystem::path& path)
     std::uint64_t last = 0;
     std::vector<json> lines = parse(whole_lines(read_text(file.number, path)), path, last);
     if (lines.empty() || !lines.front().contains(head_key))
-        throw Error(ErrorKind::invalid_input, fmt::format("'{}' is no journal of this tetrace", path.string()));
+        throw Error(ErrorKind::invalid_input, fmt::format("'{}' is not a journal of this tetrace", path.string()));
     JournalFile journal{lines.front()[head_key], {}, lines.back() == finished_line};
     std::copy_if(lines.begin() + 1, lines.end(), std::back_inserter(journal.entries),
                  [](const json& line) { return line != finished_line; });

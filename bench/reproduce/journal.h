@@ -18,10 +18,10 @@ public:
     /// Begins a journal, or continues one.
     /// head: an object that names everything that determines the entries. resume: use the entries of an existing
     /// journal; if there is none, begin one.
-    /// An incomplete last line is dropped. Throws Error{usage} where there is an unfinished journal and resume is
-    /// false, where its head differs (the text names the differences), where it is older than checksums, or where
-    /// another process is writing it; Error{invalid_input} naming file and line where a line is damaged, missing or out
-    /// of its order, where it is no regular file, exceeds 1 GiB, or cannot be read or written.
+    /// An incomplete last line is dropped. Throws Error{usage} if there is an unfinished journal and resume is
+    /// false, if its head differs (the text names the differences), if it is older than checksums, or if another
+    /// process is writing it; Error{invalid_input} naming file and line where a line is damaged, missing or out of its
+    /// order, if it is not a regular file, exceeds 1 GiB, or cannot be read or written.
     Journal(std::filesystem::path path, const nlohmann::json& head, bool resume);
     /// The entries of all shards of a run, in the order in which it would have written them: a journal without a file,
     /// to which nothing is added.
@@ -60,7 +60,7 @@ struct JournalFile {
     std::vector<nlohmann::json> entries;
     bool finished = false;
 };
-/// Reads a journal that no run continues. Throws Error{missing} where there is none, Error{invalid_input} as Journal
+/// Reads a journal that no run continues. Throws Error{missing} if there is none, Error{invalid_input} as Journal
 /// does where it is damaged.
 [[nodiscard]] JournalFile read_journal(const std::filesystem::path& path);
 

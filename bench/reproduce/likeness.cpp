@@ -32,8 +32,8 @@ std::string counts_text(const TetMeshCounts& counts, const paper::SceneFigures& 
 
 std::string other_mesh_text(std::size_t triangles, const paper::NearestBuild& nearest)
 {
-    return fmt::format("another mesh: {} triangles, where the paper's counts come from {}; ratios to its numbers "
-                       "would mean nothing. A folder with that mesh can be named in TETRACE_MESHES.",
+    return fmt::format("another mesh: {} triangles, but the paper's counts are from {}; ratios to its numbers would "
+                       "mean nothing. A folder with that mesh can be named in TETRACE_MESHES.",
                        with_commas(triangles), with_commas(nearest.triangles));
 }
 

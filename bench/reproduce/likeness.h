@@ -10,9 +10,9 @@ namespace tetrace {
 
 /// How like the paper's a scene and its tets are.
 enum class LikenessKind {
-    not_its_scene, ///< the paper has no such scene
+    not_its_scene, ///< not a scene of the paper
     other_mesh,    ///< the same object, of another number of triangles: no ratio to the paper's numbers means anything
-    tets_for_rays, ///< its mesh, in tets that are no CDT
+    tets_for_rays, ///< its mesh, in tets that are not a CDT
     other_tets,    ///< its mesh, as near as there is one, in another domain or with other counts of tets and faces
     near_counts,   ///< a domain as the paper's, and all counts within near_counts_tolerance
     papers_counts  ///< and within equal_counts_tolerance
@@ -29,7 +29,7 @@ inline constexpr double equal_counts_tolerance = 0.02, near_counts_tolerance = 0
 /// Whether numbers of a scene may be compared with the paper's, and why.
 struct Likeness {
     LikenessKind kind = LikenessKind::not_its_scene;
-    std::string reason; ///< a sentence with the numbers behind the kind; empty where it is not the paper's scene
+    std::string reason; ///< a sentence with the numbers for the kind; empty if it is not the paper's scene
 
     /// Whether ratios of our numbers to the paper's are given, and its claims about the scene decided.
     [[nodiscard]] bool is_compared() const { return kind >= LikenessKind::other_tets; }

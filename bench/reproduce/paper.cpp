@@ -50,7 +50,7 @@ constexpr PairOutcome who_is_faster[] = {
     {"armadillo", false},
 };
 
-/// The scene's row of a table of the paper's; empty where it has none.
+/// The scene's row of a table of the paper's; empty if it has none.
 template <class Row, std::size_t count>
 std::optional<Row> find_scene(const Row (&rows)[count], std::string_view scene)
 {

@@ -24,13 +24,13 @@ enum class Place { cpu, gpu };
 struct SceneFigures {
     std::string_view scene; ///< as the catalogue calls it
     std::uint64_t tets, occlusive_faces, free_faces;
-    double memory_mib; ///< printed as MB: 96 bytes a tet are these numbers in units of 2^20 bytes
+    double memory_mib; ///< printed as MB: 96 bytes per tet are these numbers in units of 2^20 bytes
     double cpu_mrays, gpu_mrays;
 
     [[nodiscard]] double mrays(Place place) const { return place == Place::cpu ? cpu_mrays : gpu_mrays; }
 };
 [[nodiscard]] std::span<const SceneFigures> scenes();
-/// The scene's; empty where it is not one of the paper's: banana, bunny or armadillo.
+/// The scene's; empty if it is not one of the paper's: banana, bunny or armadillo.
 [[nodiscard]] std::optional<SceneFigures> figures_of(std::string_view scene);
 [[nodiscard]] bool has_scene(std::string_view scene);
 /// The text's "on average 9 Mrays/s on the CPU, 280 on the GPU": the means over the three scenes.
@@ -54,11 +54,11 @@ struct ExtremeView {
 inline constexpr std::string_view figure6_scene = "bunny";
 inline constexpr ExtremeView view_a = {40.1, 9.6}, view_b = {122, 22.71};
 
-/// Table 4: rays with a wrong result per image, on the GPU, averaged over about 1,300 views. Empty where it has none.
+/// Table 4: rays with a wrong result per image, on the GPU, averaged over about 1,300 views. Empty if it has none.
 [[nodiscard]] std::optional<double> wrong_rays_of(std::string_view scene, Method method);
 
-/// Table 5: milliseconds of the exit search alone, 10,000 random tets, 16,384 random rays that stab each; on one thread
-/// of the CPU, and on the GPU. Empty for methods that it does not have.
+/// Table 5: milliseconds of the exit search by itself, 10,000 random tets, 16,384 random rays that stab each; on one
+/// thread of the CPU, and on the GPU. Empty for methods that it does not have.
 [[nodiscard]] std::optional<double> search_ms(Method method, Place place);
 inline constexpr double searches = 10'000.0 * 16'384;
 /// What its text says of the fastest older method: how much slower it is than the paper's own. (The table's numbers for

@@ -34,7 +34,7 @@ void sum_up(RowRun& row, const std::vector<ImageRecord>& images)
             if (!row.readings) row.readings.emplace();
             row.readings->add(*image.gpu);
         }
-        // A row that turned out wrong was no longer timed; it has no rate.
+        // A row that turned out wrong was no longer timed; it is without a rate.
         for (std::size_t s = 0; s < std::min(row.samples_s.size(), image.samples_s.size()); ++s) {
             row.samples_s[s] += image.samples_s[s];
             row.wall_samples_s[s] += image.wall_samples_s[s];
@@ -65,7 +65,7 @@ void RunProgress::show(const std::string& stage) const
 
 namespace {
 
-/// By the clock of MachineWatch; 0 where the entry has no samples.
+/// By the clock of MachineWatch; 0 if the entry lacks samples.
 double last_sample_end(const json& entry)
 {
     double end_s = 0;
@@ -279,8 +279,7 @@ void RowRecorder::restore(std::size_t part, const json& entry)
     check_entry(part, entry);
     for (const RowRun& row : run_->rows)
         if (traced(row) != nullptr && !entry.at("rows").contains(row_name(row.key)))
-            reject_journal(
-                fmt::format("the journal has no answers of {}, which could not run then", row_name(row.key)));
+            reject_journal(fmt::format("the journal lacks hits of {}, which could not run then", row_name(row.key)));
     for (std::size_t i = 0; i < run_->rows.size(); ++i)
         if (traced(run_->rows[i]) != nullptr)
             restore(i, part, outcome_from_json(entry["rows"][row_name(run_->rows[i].key)]));

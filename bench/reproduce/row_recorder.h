@@ -54,7 +54,7 @@ public:
     RowRecorder& operator=(const RowRecorder&) = delete;
 
     /// name: of the scene, or what it is, for the progress line. journal: may be null. watch: takes the pulse between
-    /// samples; may be null. Throws Error{usage} where the journal has other parts or other rows, or an entry is
+    /// samples; may be null. Throws Error{usage} if the journal has other parts or other rows, or an entry is
     /// damaged. Of a merged journal nothing is traced: it must have all parts.
     /// budget: of rows that trace views; may skip rows.
     void run(std::size_t parts, const std::string& name, Journal* journal, RunProgress& progress,
@@ -107,7 +107,7 @@ private:
     unsigned samples_;
     double sample_s_;
     Journal* journal_ = nullptr;
-    MachineWatch* watch_ = nullptr; ///< null where nothing is timed
+    MachineWatch* watch_ = nullptr; ///< null if nothing is timed
     Budget* budget_ = nullptr;
     std::vector<ImageRecord> records_; ///< of the current part, row by row
     std::vector<std::size_t> begun_;   ///< rows that the part began with

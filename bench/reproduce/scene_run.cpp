@@ -96,7 +96,7 @@ Options options_of(Structure structure, Options options)
     return options;
 }
 
-/// The rows of the CDT's fastest walks, those through records, where the options have not left them out.
+/// The rows of the CDT's fastest walks, those through records, unless the options left them out.
 std::vector<RowKey> rows_of_fastest_walks(const Options& options, const std::string& label)
 {
     Options of_walks = options_of(Structure::cdt, options);

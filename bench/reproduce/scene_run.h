@@ -34,10 +34,10 @@ struct SceneBuild {
 /// A scene with its rows, and the results for each view.
 struct SceneRun : RecordedRows {
     SceneBuild build;
-    std::unique_ptr<SceneWork> scene; ///< null where it could not be loaded
+    std::unique_ptr<SceneWork> scene; ///< null if it could not be loaded
     Likeness likeness;                ///< to the paper's
     std::unique_ptr<Verifier> verifier;
-    std::unique_ptr<FlatTets> flat; ///< null where nothing needs it
+    std::unique_ptr<FlatTets> flat; ///< null if nothing needs it
     double open_s = 0;              ///< seconds for loading the scene and opening its rows
 
     std::vector<std::string> flawed_pictures, extreme_pictures; ///< names of files in the result's folder
@@ -68,13 +68,13 @@ using SceneRuns = std::vector<const SceneRun*>;
 /// Loads the scene and opens its rows; a scene that cannot be loaded ends its rows with the reason.
 [[nodiscard]] SceneRun open_scene_run(const SceneBuild& build, const Options& options);
 
-/// Loads the scene alone, for rows that were read from results, for merging. Throws what load_work() throws.
+/// Loads only the scene, for rows that were read from results, for merging. Throws what load_work() throws.
 [[nodiscard]] SceneRun recorded_scene_run(const SceneBuild& build, const Options& options,
                                           const std::vector<RowRecord>& rows);
 
 /// Traces every view with every row, verifies each image, times it where asked for, and appends the view to the
 /// journal. Views that are in the journal are taken from there. journal, watch: may be null.
-/// Throws Error{usage} where the journal belongs to another scene or to other rows.
+/// Throws Error{usage} if the journal belongs to another scene or to other rows.
 /// budget: of this scene; may skip rows.
 void run_views(SceneRun& run, const Options& options, Journal* journal, RunProgress& progress,
                MachineWatch* watch = nullptr, Budget& budget = no_budget());

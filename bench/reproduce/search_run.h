@@ -7,7 +7,8 @@
 
 namespace tetrace {
 
-/// Exit searches alone: random tets, random rays that stab each (core/rays/search_set.h), in batches of whole tets.
+/// Exit searches by themselves: random tets, random rays that stab each (core/rays/search_set.h), in batches of whole
+/// tets.
 struct SearchRun : RecordedRows {
     SearchSize size;
     std::uint32_t batch_tets = 0; ///< of each batch; the last may have fewer
@@ -26,10 +27,10 @@ struct SearchRun : RecordedRows {
 [[nodiscard]] std::uint32_t batch_count(const SearchSize& size);
 
 /// Opens the rows of task search that the options select.
-/// Throws Error{usage} where nothing is selected.
+/// Throws Error{usage} if nothing is selected.
 [[nodiscard]] SearchRun open_search_run(const Options& options, const std::vector<Backend*>& backends = all_backends());
 
-/// A run of rows that were read from results, for merging: it has no tets.
+/// A run of rows that were read from results, for merging: it is without tets.
 [[nodiscard]] SearchRun recorded_search_run(const Options& options, const std::vector<RowRecord>& rows);
 
 /// Does every batch with every row. Compares each face with openmp's and judges it by exact arithmetic, outside the
@@ -38,7 +39,7 @@ struct SearchRun : RecordedRows {
 /// view, its number among the tet's rays as x, and local faces; reference_face: the least of the faces through which it
 /// exactly leaves.
 /// journal, watch: may be null.
-/// Throws Error{usage} where the journal belongs to other searches or rows.
+/// Throws Error{usage} if the journal belongs to other searches or rows.
 void run_searches(SearchRun& run, const Options& options, Journal* journal, RunProgress& progress,
                   MachineWatch* watch = nullptr);
 

@@ -12,7 +12,7 @@ namespace tetrace {
 /// The set-up costs of a run's rows, kept in its journal, so that a resumed run reports the same build times.
 class SetupCosts {
 public:
-    /// journal: may be null. Throws Error{usage} where one of its costs is damaged.
+    /// journal: may be null. Throws Error{usage} if one of its costs is damaged.
     explicit SetupCosts(Journal* journal);
 
     /// Gives rows that were just opened the costs that the journal has of them; others are added to it.

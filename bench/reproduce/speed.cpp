@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t none = static_cast<std::size_t>(-1);
 
-/// The rated row that differs from the given one only in its method; none where there is none.
+/// The rated row that differs from the given one only in its method; none if there is none.
 std::size_t find_beside(const RecordedRows& run, const RowRecord& other, Method method)
 {
     RowKey wanted = other.key;
@@ -29,7 +29,7 @@ struct TimeRatio {
     Estimate estimate;
 };
 
-/// The ratios of one pair: where the ratio is least and where it is greatest.
+/// The ratios of one pair: the places of the smallest and the largest ratio.
 std::string range_text(const std::string& pair, const std::vector<TimeRatio>& ratios)
 {
     std::vector<TimeRatio> of_pair;
@@ -53,7 +53,7 @@ struct Ratios {
     {
         const std::size_t a = find_beside(run, other, above), b = find_beside(run, other, below);
         if (a == none || b == none) {
-            missing = fmt::format("{} has no rate beside {} on {} {}.", name_of(a == none ? above : below),
+            missing = fmt::format("{} and {} do not both have rates on {} {}.", name_of(a == none ? above : below),
                                   name_of(a == none ? below : above), other.key.scene, device_label(other.key));
             return;
         }
@@ -203,7 +203,7 @@ std::string series_name(const RowRecord& row)
 Claim fastest_claim(Claim claim, const RecordedRuns& runs, const IsMeant& is_meant)
 {
     if (older_methods().empty()) {
-        claim.evidence = "This program has no other method.";
+        claim.evidence = "This is the program's only method.";
         return claim;
     }
     Ratios ratios;

@@ -10,7 +10,7 @@ namespace {
 
 /// Numbers of a row's views, such as their correlation and their line's intercept.
 using Numbers = std::vector<Estimate>;
-/// From the tets a ray and the seconds of each view, of which there are enough.
+/// From the tets per ray and the seconds of each view, of which there are enough.
 using NumbersOfViews =
     std::function<Numbers(const std::vector<double>& steps, const std::vector<double>& seconds, Sampling sampling)>;
 

@@ -65,7 +65,7 @@ Yardsticks::Yardsticks(Journal* journal) : journal_(journal)
     if (journal == nullptr) return;
     for (const json& entry : journal->entries()) {
         if (!entry.contains(entry_key)) continue;
-        if (!is_whole_entry(entry)) journal->reject("a yardstick in the journal is damaged");
+        if (!is_whole_entry(entry)) journal->reject("a microbenchmark in the journal is damaged");
         known_[entry[entry_key]] = yardstick_of(entry);
     }
 }

@@ -5,13 +5,13 @@
 
 namespace tetrace {
 
-/// The yardsticks of a run's devices, kept in its journal, so that a resumed run reports the same bandwidth.
+/// The microbenchmarks of a run's devices, kept in its journal, so that a resumed run reports the same bandwidth.
 class Yardsticks {
 public:
-    /// journal: may be null. Throws Error{usage} where one of its yardsticks is damaged.
+    /// journal: may be null. Throws Error{usage} if one of its microbenchmarks is damaged.
     explicit Yardsticks(Journal* journal);
 
-    /// As measure_devices(); yardsticks that are in the journal are taken from there, the others are added to it.
+    /// As measure_devices(); microbenchmarks that are in the journal are taken from there, the others are added to it.
     void measure(std::vector<RowDevice>& devices, const SessionOptions& options);
 
 private:

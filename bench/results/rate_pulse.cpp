@@ -25,11 +25,11 @@ std::string disturbance_between(const RatePulse& before, const RatePulse& after,
     const auto add = [&](const std::string& what) { text += (text.empty() ? "" : "; ") + what; };
     for (const auto& [name, one] : {std::pair(before_name, &before), std::pair(after_name, &after)})
         if (one->is_noisy())
-            add(fmt::format("in {} the pulse beside its samples took {:.2f} times its fastest", name, *one->ratio));
+            add(fmt::format("in {} calibration during its samples took {:.2f} times its fastest", name, *one->ratio));
     if (!same_machine || !before.host_s || !after.host_s) return text;
     const double change = *after.host_s / *before.host_s, factor = std::max(change, 1 / change);
     if (factor >= noisy_pulse)
-        add(fmt::format("the same machine's pulse took {:.2f} times as long in {} as in {}", factor,
+        add(fmt::format("the same machine's calibration took {:.2f} times as long in {} as in {}", factor,
                         change > 1 ? after_name : before_name, change > 1 ? before_name : after_name));
     return text;
 }

@@ -77,8 +77,8 @@ void find_different_work(const ResultFile& before, const ResultFile& after, std:
     }
     if (!any_compared && !reasons.empty())
         reject_pair(before, after,
-                    fmt::format("no row did the same work in both, so that no times compare:{}\nmeasure both on the "
-                                "same scenes and views",
+                    fmt::format("no row did the same work in both, so no times are comparable:{}\n"
+                                "measure both on the same scenes and views",
                                 reasons));
 }
 
@@ -90,13 +90,13 @@ void require_rows(const ResultFile& before, const ResultFile& after, const std::
                     filter.empty() ? "neither has a row" : fmt::format("--filter '{}' matches no row", filter));
     if (std::ranges::none_of(rows, [](const ComparedRow& row) { return is_timed(row.before); }))
         reject_pair(before, after,
-                    "A has no row with samples to compare with; 'tetrace bench --out FILE.json' times rows");
+                    "A lacks rows with samples to compare with; 'tetrace bench --out FILE.json' times rows");
     const auto is_common = [](const ComparedRow& row) { return row.before != nullptr && row.after != nullptr; };
     if (std::ranges::none_of(rows, is_common))
         reject_pair(
             before, after,
-            fmt::format("they have no row in common; A has {} and its like, B {}", rows.front().name(),
-                        after.timed_rows().empty() ? "none" : after.timed_rows().front()->name + " and its like"));
+            fmt::format("they share no row; A has {} and similar rows, B {}", rows.front().name(),
+                        after.timed_rows().empty() ? "none" : after.timed_rows().front()->name + " and similar rows"));
 }
 
 } // namespace

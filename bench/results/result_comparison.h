@@ -15,13 +15,13 @@ enum class RowOutcome {
     different, ///< timed in both, but not of the same work: scene, views, size or hits differ
     failed,    ///< timed before; wrong or in error after
     missing,   ///< timed before; missing, skipped, unsupported or without samples after
-    added,     ///< timed after alone
+    added,     ///< only timed after
     untimed,   ///< timed in neither
 };
 
 /// A row of two results. Refers to them.
 struct ComparedRow {
-    const ResultRow* before = nullptr; ///< null where the result has no such row
+    const ResultRow* before = nullptr; ///< null if the result lacks the row
     const ResultRow* after = nullptr;  ///< the same; one of the two is there
     RowOutcome outcome = RowOutcome::untimed;
     std::optional<SpeedChange> change; ///< of compared rows
@@ -32,7 +32,7 @@ struct ComparedRow {
     /// "SAME", "FASTER", "SLOWER", "UNSURE" and "NOISY" of compared rows; else "DIFFERENT", "FAILED", "MISSING", "NEW"
     /// or "NOT TIMED".
     [[nodiscard]] std::string verdict() const;
-    /// Compared by its medians alone: the samples allow no interval, so that its verdict is "UNSURE" however far the
+    /// Compared only by its medians: the samples allow no interval, so that its verdict is "UNSURE" however far the
     /// medians lie apart.
     [[nodiscard]] bool has_too_few_samples() const { return change && !change->interval; }
     /// Compared, but the machine was not the same in both: the verdict is "NOISY" whatever the interval says. A row
@@ -51,7 +51,7 @@ struct ResultComparison {
     std::vector<ComparedRow> rows; ///< in the order of before, then those that only after has
 
     [[nodiscard]] std::size_t count(RowOutcome outcome) const;
-    /// Of the ratios of compared rows; empty where there is none. Rows that failed or are missing have no part in it.
+    /// Of the ratios of compared rows; empty without any. It excludes rows that failed or are missing.
     [[nodiscard]] std::optional<double> geometric_mean() const;
     /// The chance, at most, that any compared row is called faster or slower where nothing changed: comparison_error,
     /// or more where rows have few samples.
@@ -65,8 +65,8 @@ struct ResultComparison {
 /// empty: all). A row timed in both whose scenes' hashes, views, sizes or hit hashes differ did different work, and is
 /// not compared; so did exit searches of other numbers (bench/results/same_work.h). A row is noisy where its pulse
 /// moved by noisy_pulse (bench/statistics/statistics.h) in either run, or, on the host and one machine, between the
-/// two. Throws Error{invalid_input} where all such rows did different work, with the reasons; and where there is
-/// nothing to compare: before has no timed row, or the two have no row in common.
+/// two. Throws Error{invalid_input} if all such rows did different work, with the reasons; and if there is nothing to
+/// compare: before lacks timed rows, or the two share no row.
 [[nodiscard]] ResultComparison compare_results(const ResultFile& before, const ResultFile& after,
                                                const std::string& filter, double tolerance);
 

@@ -32,7 +32,7 @@ constexpr std::size_t longest_name = 1000; // of a row, in bytes
 std::string read_bytes(const std::filesystem::path& path)
 {
     std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) reject_file(path, ErrorKind::missing, "there is no such file");
+    if (!std::filesystem::exists(path, ignored)) reject_file(path, ErrorKind::missing, "the file does not exist");
     if (std::filesystem::is_directory(path, ignored)) reject_file(path, ErrorKind::invalid_input, "it is a folder");
     std::ifstream file(path, std::ios::binary);
     if (!file) reject_file(path, ErrorKind::invalid_input, std::strerror(errno));
@@ -85,7 +85,7 @@ std::string line_or_nothing(const ResultValue& object, const char* key)
 
 double duration(const ResultValue& value)
 {
-    if (value.number() < 1e-12 || value.number() > 1e12) value.reject("is no duration: 1e-12 to 1e12 s are");
+    if (value.number() < 1e-12 || value.number() > 1e12) value.reject("is not a duration of 1e-12 to 1e12 s");
     return value.number();
 }
 
@@ -163,7 +163,7 @@ std::string read_status(const ResultValue& value)
     return status;
 }
 
-/// Results from before the key have it in the row's name alone, where it is not tiles: "/schedule:packets/".
+/// Results from before the key have it only in the row's name, if it is not tiles: "/schedule:packets/".
 std::string read_schedule(const ResultValue& row)
 {
     if (const auto schedule = row.find("schedule")) return schedule->line();
@@ -285,7 +285,7 @@ ResultFile read_result(const std::filesystem::path& path)
     const auto section = ResultValue(result.json, path.string()).find("tetrace");
     if (!section)
         reject_file(path, ErrorKind::invalid_input,
-                    "it has no section 'tetrace', so it is no result; 'tetrace bench --out FILE.json' writes one");
+                    "section 'tetrace' is missing, so it is not a result; 'tetrace bench --out FILE.json' writes one");
     result.head = read_head(*section);
     // `tetrace scenes` lists other things under the same key.
     if (result.head.verb == "scenes") return result;

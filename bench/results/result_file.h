@@ -18,9 +18,9 @@ inline constexpr int schema_version = 2;
 struct ResultHead {
     std::uint64_t schema_version = 0;
     std::string verb, date, version, commit, cpu, system;
-    std::optional<double> host_pulse_s;   ///< the fastest of the run; empty where it was not taken
+    std::optional<double> host_pulse_s;   ///< the fastest of the run; empty if it was not taken
     std::optional<std::uint64_t> threads; ///< that rows and pulse used
-    std::string machine; ///< the user's label; else the processor with family, model and stepping, where they are known
+    std::string machine; ///< the user's label; else the CPU with family, model and stepping, if they are known
 
     /// A device's name, but of the processor the machine's: several processors are called "AMD EPYC".
     [[nodiscard]] const std::string& shown(const std::string& device) const { return device == cpu ? machine : device; }
@@ -39,22 +39,22 @@ struct ResultScene {
 /// An API and a device's number in it: "opencl", "opencl:1".
 [[nodiscard]] std::string api_name(const std::string& backend, std::uint64_t index);
 
-/// A row of a result; texts are empty where the file has none.
+/// A row of a result; texts are empty if the file has none.
 struct ResultRow {
     std::string name;
-    std::string scene; ///< empty: exit searches alone
+    std::string scene; ///< empty: exit searches
     std::string backend, status;
     std::string reason;   ///< several lines perhaps; no other control characters
     std::string schedule; ///< how rays come to work items, "tiles" for example
     std::string device, driver;
-    std::optional<DeviceKind> device_kind; ///< empty where the row has no device
+    std::optional<DeviceKind> device_kind; ///< empty if the row has no device
     std::uint64_t device_index = 0;        ///< in its backend
-    std::string hit_hash; ///< empty where no rays were traced, or only by shards; of searches, the hash of their faces
-    std::string views_hash;            ///< empty in results before 2026-11-23 as well
+    std::string hit_hash;   ///< empty if no rays were traced, or only by shards; of searches, the hash of their faces
+    std::string views_hash; ///< empty in results before 2026-11-23 as well
     std::optional<double> mrays_per_s; ///< of the median sample; of searches, millions of those
-    std::optional<double> pulse_ratio; ///< of the pulse beside its samples to the run's fastest
+    std::optional<double> pulse_ratio; ///< of calibration during its samples to the run's fastest
     std::uint64_t launches = 0;        ///< of a pass of a sample; 0: one for each view
-    std::vector<double> samples_s;     ///< device seconds, each from 1e-12 to 1e12; empty where the row was not timed
+    std::vector<double> samples_s;     ///< device seconds, each from 1e-12 to 1e12; empty if the row was not timed
 
     [[nodiscard]] std::string api() const { return api_name(backend, device_index); }
 };
@@ -72,21 +72,21 @@ struct ResultFile {
 
     /// The section `tetrace`. Refers to this object, which has to outlive it.
     [[nodiscard]] ResultValue section() const { return ResultValue(json, path.string()).at("tetrace"); }
-    /// Null where no scene (row) has that name.
+    /// Null if no scene (row) has that name.
     [[nodiscard]] const ResultScene* find_scene(const std::string& name) const;
     [[nodiscard]] const ResultRow* find_row(const std::string& name) const;
     /// The rows of scenes, then those of searches.
     [[nodiscard]] std::vector<const ResultRow*> timed_rows() const;
 };
 
-/// The kind of a device, from a device of a result. Throws Error{invalid_input} where its "type" names none.
+/// The kind of a device, from a device of a result. Throws Error{invalid_input} if its "type" names none.
 [[nodiscard]] DeviceKind device_kind_of(const ResultValue& device);
 
 /// Reads a result as results/README.md states it, of any verb and of schema versions 1 and 2, which agree on all that
-/// ResultFile's members hold. Google Benchmark's own part, which older results of bench have besides, is left out.
-/// Throws Error{missing} for a missing file; Error{invalid_input} naming file and key for one that cannot be
-/// read, exceeds 64 MiB, 6,000,000 values or 64 levels, is no JSON, no result, of another schema version, lacks a key
-/// or has one of another type.
+/// ResultFile's members hold. Google Benchmark's own part, which older results of bench also have, is left out. Throws
+/// Error{missing} for a missing file; Error{invalid_input} naming file and key for one that cannot be
+/// read, exceeds 64 MiB, 6,000,000 values or 64 levels, is not JSON, not a result, of another schema version, lacks a
+/// key or has one of another type.
 [[nodiscard]] ResultFile read_result(const std::filesystem::path& path);
 
 } // namespace tetrace

@@ -22,8 +22,9 @@ std::vector<fs::path> files_in(const fs::path& folder)
                     fmt::format("reading the folder '{}': {}", folder.string(), problem.code().message()));
     }
     if (files.empty())
-        throw Error(ErrorKind::invalid_input,
-                    fmt::format("reading the folder '{}': no file in it or below it ends in .json", folder.string()));
+        throw Error(
+            ErrorKind::invalid_input,
+            fmt::format("reading the folder '{}': it has no .json file, nor has any subfolder", folder.string()));
     std::ranges::sort(files);
     return files;
 }
@@ -44,7 +45,7 @@ std::vector<fs::path> files_below(const std::vector<fs::path>& paths)
     for (const fs::path& path : paths) {
         std::error_code ignored;
         if (!fs::exists(path, ignored))
-            throw Error(ErrorKind::missing, fmt::format("'{}': there is no such file or folder", path.string()));
+            throw Error(ErrorKind::missing, fmt::format("'{}': the file or folder does not exist", path.string()));
         for (fs::path& file : fs::is_directory(path, ignored) ? files_in(path) : std::vector{path})
             if (std::ranges::find(files, file) == files.end()) files.push_back(std::move(file));
     }

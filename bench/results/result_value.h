@@ -24,7 +24,7 @@ public:
     [[nodiscard]] std::vector<std::pair<std::string, ResultValue>> members() const; ///< of an object
 
     [[nodiscard]] std::string text() const; ///< any string, several lines perhaps
-    /// The text of an object's member; empty where it has no such key.
+    /// The text of an object's member; empty if it lacks the key.
     [[nodiscard]] std::string text_at(const std::string& key) const
     {
         const auto value = find(key);

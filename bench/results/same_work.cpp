@@ -44,7 +44,7 @@ std::string other_launches(const std::string& a, const std::string& b)
     return a == b ? std::string() : fmt::format("{} in A, {} in B", a, b);
 }
 
-/// Merged shards have the hash of their views alone.
+/// Merged shards have only the hash of their views.
 std::string other_answers(const ResultRow& a, const ResultRow& b)
 {
     const bool have_hits = !a.hit_hash.empty() && !b.hit_hash.empty();
@@ -83,7 +83,7 @@ std::string rays_of(const ResultFile& file, const ResultRow& row)
 std::string work_of(const ResultFile& file, const ResultRow& row)
 {
     const std::string& hash =
-        row.hit_hash.empty() ? row.views_hash : row.hit_hash; // merged shards have the latter alone
+        row.hit_hash.empty() ? row.views_hash : row.hit_hash; // merged shards have only the latter
     return hash.empty() ? std::string()
                         : fmt::format("{} {} {} {}", row.name, hash, rays_of(file, row), launches_of(file, row));
 }

@@ -7,10 +7,10 @@
 
 namespace tetrace {
 
-/// What a GPU tells of itself at a moment; what it does not tell is left out.
+/// What a GPU reports at a moment; what it does not report is left out.
 struct GpuState {
     std::optional<double> clock_mhz, memory_clock_mhz, power_w, temperature_c;
-    /// Why its clocks are lower than they could be, for example "power"; empty where they are not, or it does not tell.
+    /// Why its clocks are lower than they could be, for example "power"; empty if they are not, or it does not tell.
     std::string throttled;
 };
 
@@ -22,7 +22,7 @@ struct GpuSummary {
     std::string throttled_by;            ///< each reason once, of dropped samples and of throttled ones
 };
 
-/// What the GPU of a row told while the row's samples were taken.
+/// What the GPU of a row reported while the row's samples were taken.
 struct GpuReadings {
     std::vector<GpuState> states; ///< one a sample that was kept, while its last view was traced
     std::uint32_t dropped = 0;    ///< samples that were taken again, since the GPU was throttled
@@ -30,7 +30,7 @@ struct GpuReadings {
 
     /// Samples that were kept although the GPU was throttled: it still was when they had been taken again.
     [[nodiscard]] std::uint32_t throttled() const;
-    /// The median over the samples; empty where none tells.
+    /// The median over the samples; empty if none tells.
     [[nodiscard]] std::optional<double> median(std::optional<double> GpuState::*member) const;
     [[nodiscard]] GpuSummary summary() const;
     void add_reason(const std::string& reason);

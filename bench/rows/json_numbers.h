@@ -15,16 +15,16 @@ template <std::unsigned_integral Count>
 [[nodiscard]] Count count_from(const nlohmann::json& value)
 {
     if (!value.is_number_unsigned() || value.get<std::uint64_t>() > std::numeric_limits<Count>::max())
-        throw std::domain_error(value.dump() + " is no number of things, or too large");
+        throw std::domain_error(value.dump() + " is not a count, or too large");
     return value.get<Count>();
 }
 
-/// JSON has no NaN and no infinity: both are null there, and come back as NaN.
+/// JSON has neither NaN nor infinity: both are null there, and are read as NaN.
 [[nodiscard]] inline float float_from(const nlohmann::json& value)
 {
     if (value.is_null()) return std::numeric_limits<float>::quiet_NaN();
     if (!value.is_number() || !(std::abs(value.get<double>()) <= std::numeric_limits<float>::max()))
-        throw std::domain_error(value.dump() + " is no number, or too large");
+        throw std::domain_error(value.dump() + " is not a number, or too large");
     return value.get<float>();
 }
 
@@ -32,7 +32,7 @@ template <std::unsigned_integral Count>
 [[nodiscard]] inline double amount_from(const nlohmann::json& value)
 {
     if (!value.is_number() || !std::isfinite(value.get<double>()) || value.get<double>() < 0)
-        throw std::domain_error(value.dump() + " is no number, negative, or too large");
+        throw std::domain_error(value.dump() + " is not a number, negative, or too large");
     return value.get<double>();
 }
 

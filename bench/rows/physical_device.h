@@ -11,10 +11,10 @@ namespace tetrace {
 /// Whether the device computes on the host's own processor.
 [[nodiscard]] bool runs_on_host(const Device& device);
 
-/// The piece of hardware behind each device, across all APIs: equal numbers mean the same piece, counted from 0 in
-/// order of first appearance. Usable devices on the host are one piece. Other devices are one piece where their UUIDs
-/// are equal or, if one of them has no UUID, their PCI addresses. A device that cannot be used and has neither is a
-/// piece of its own: it represents what is missing.
+/// The piece of hardware of each device, across all APIs: equal numbers mean the same piece, counted from 0 in order of
+/// first appearance. Usable devices on the host are one piece. Other devices are one piece where their UUIDs are equal
+/// or, if one of them has no UUID, their PCI addresses. A device that cannot be used and has neither is a piece of its
+/// own: it represents what is missing.
 [[nodiscard]] std::vector<std::size_t> physical_devices(std::span<const Device> devices);
 
 } // namespace tetrace

@@ -9,7 +9,7 @@ namespace tetrace {
 
 namespace {
 
-/// The kernel that traces the primary hits from which other rays are made; through a BVH if the scene has no tets.
+/// The kernel that traces the primary hits from which other rays are made; through a BVH for a scene without tets.
 KernelId reference_kernel(const SceneWork& scene)
 {
     if (!scene.loaded().no_tets) return {};

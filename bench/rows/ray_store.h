@@ -16,7 +16,7 @@ class SceneWork;
 class RayStore {
 public:
     /// The rays of a view (an index in SceneWork::views()). Not for kind primary: kernels make those rays themselves.
-    /// Throws Error{internal} where openmp cannot trace the primary rays that they are made from.
+    /// Throws Error{internal} if openmp cannot trace the primary rays that they are made from.
     [[nodiscard]] const RaySet& set(SceneWork& scene, RayKind kind, RayOrder order, std::size_t view);
 
     /// The same in the form that a kernel's session takes: from a tet of the packed scene for the cdt. For BVHs, whose

@@ -119,8 +119,8 @@ struct LaunchCounts {
     std::uint32_t single = 0; ///< if each view has a launch of its own
 };
 
-/// A row as plain data: what it is, what setting it up took, its answers, and its samples. Everything that is printed,
-/// written or compared is made of records, whether they were just measured, read from a result, or merged of several.
+/// A row as plain data: its key, its set-up, its hits, and its samples. Everything that is printed, written or compared
+/// is made of records, whether they were just measured, read from a result, or merged of several.
 struct RowRecord {
     RowKey key;
     Device device;                     ///< without a name if the row's scene could not be loaded

@@ -40,7 +40,7 @@ void note_building(RowRun& row)
         setup.bvh_build_s = row.packed->bvh_build_s;
         row.fall_back = row.packed->fall_back;
     }
-    if (row.scene == nullptr) return; // searches have no structure
+    if (row.scene == nullptr) return; // searches are without a structure
     if (row.packed == nullptr)
         setup.build_s = times.build_s > 0 ? times.build_s : times.compile_s;
     else
@@ -137,7 +137,7 @@ void guarded(RowRun& row, const std::function<void()>& work)
 
 namespace {
 
-/// Empty where the environment names no cache folder; then no program is kept.
+/// Empty if the environment names no cache folder; then no program is kept.
 std::filesystem::path program_cache()
 {
     try {

@@ -56,7 +56,7 @@ void reopen_row(RowRun& row, const Options& options);
 /// Notes in the record what compiling for the open session has taken so far: some is done at the first launch.
 void note_compiling(RowRun& row);
 
-/// Ends a row of an interrupted run that has no answer yet.
+/// Ends a row of an interrupted run that is without hits so far.
 void end_interrupted(RowRun& row);
 
 /// Does a part of a row's work. An exception becomes the row's outcome and frees its session; Error{interrupted} is

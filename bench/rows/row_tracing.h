@@ -9,7 +9,7 @@
 namespace tetrace {
 
 /// Number of rays that the row traces of a view (an index in SceneWork::views()): one for each pixel, or the given
-/// rays. There are no given rays where no primary ray of the view hits.
+/// rays. There are no given rays if no primary ray of the view hits.
 [[nodiscard]] std::size_t ray_count(const RowRun& row, std::size_t view);
 
 /// Hash of a row's given rays, view after view.
@@ -32,7 +32,7 @@ namespace tetrace {
 /// row's session, and of the device's memory a third, which `rows` rows share.
 [[nodiscard]] std::uint64_t batch_limit(const RowRun& row, std::size_t rows);
 
-/// The views with rays in as few batches as the limit allows; a view that exceeds it alone is a batch.
+/// The views with rays in as few batches as the limit allows; a view that exceeds it by itself is a batch.
 [[nodiscard]] std::vector<ViewBatch> joined_views(const RowRun& row, std::uint64_t limit_bytes);
 
 /// The views with rays, each in a batch of its own.

@@ -100,7 +100,7 @@ std::vector<std::size_t> devices_with_rows(const Options& options, const Backend
     return indices;
 }
 
-/// Whether --layout, --filter or --benchmark_filter names the layout rt, or --schedule the one that it alone has.
+/// Whether --layout, --filter or --benchmark_filter names the layout rt, or --schedule the one that only it has.
 bool names_rt(const Options& options)
 {
     static const NameFilter word("layout rt", "\\brt\\b");
@@ -113,7 +113,7 @@ bool names_rt(const Options& options)
 }
 
 /// What traces rays of layout rt on a device: what --schedule names, if that is tiles or pipeline, and else ray queries
-/// (tiles), or a pipeline where the driver has no ray queries.
+/// (tiles), or a pipeline if the driver lacks ray queries.
 bool wanted_tracer(const Options& options, const Backend& backend, std::size_t device, const KernelId& kernel)
 {
     const auto can = [&](KernelId other, Schedule schedule) {
@@ -204,7 +204,7 @@ std::string device_names(const Options& options, const std::vector<Backend*>& ba
     return text;
 }
 
-/// A text of --device that means no device would leave out what the user came for. Where no backend kept has a usable
+/// A text of --device that means no device would leave out what the user came for. If no backend kept has a usable
 /// device, its rows give the reason.
 void require_named_devices(const Options& options, const std::vector<Backend*>& backends)
 {

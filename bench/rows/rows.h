@@ -16,7 +16,7 @@ struct RowKey {
     RayKind rays = RayKind::primary;
     TetOrder order = TetOrder::chains;
     std::size_t device = 0; ///< index in the backend's devices()
-    unsigned threads = 0;   ///< host threads, where they differ from the whole run's
+    unsigned threads = 0;   ///< host threads, if they differ from the whole run's
     RayOrder ray_order = RayOrder::tiles;
 
     friend bool operator==(const RowKey&, const RowKey&) = default;
@@ -59,10 +59,10 @@ struct RowKey {
 /// --require names it.
 /// - A kernel that a backend has and a device cannot run still gets a row, which ends as unsupported.
 /// - Layout rt has rows by default only on real GPUs that run it, and elsewhere where --layout, a filter or schedule
-/// pipeline names it. Of schedules, tiles (ray queries) and pipeline select among them. Where neither is given, a
-/// device has one row: ray queries, or a pipeline if it has only that. Throws Error{missing} where a text of --device
-/// means no usable device, listing those that there are; Error{usage} where nothing is selected: it names the options,
-/// and what there would be without them.
+/// pipeline names it. Of schedules, tiles (ray queries) and pipeline select among them. If neither is given, a device
+/// has one row: ray queries, or a pipeline if it has only that. Throws Error{missing} if a text of --device matches
+/// no usable device, listing the usable ones; Error{usage} if nothing is selected: it names the options, and what there
+/// would be without them.
 [[nodiscard]] std::vector<RowKey> select_rows(const Options& options, const std::vector<std::string>& scene_labels,
                                               const std::vector<Backend*>& backends = all_backends());
 

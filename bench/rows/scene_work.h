@@ -19,7 +19,7 @@ struct Packed {
     PackedScene data;
     double pack_s = 0;
     std::optional<double> bvh_build_s; ///< of a BVH, which is built once for all its layouts
-    std::string fall_back;             ///< of a BVH: why it is not the heuristic's best tree; empty where it is
+    std::string fall_back;             ///< of a BVH: why it is not the heuristic's best tree; empty if it is
 };
 
 /// A loaded scene with everything that its rows share: packed forms, views, start tets.
@@ -31,7 +31,7 @@ public:
 
     [[nodiscard]] const LoadedScene& loaded() const { return loaded_; }
     [[nodiscard]] const std::string& label() const { return loaded_.scene.name; }
-    /// The part of a command line that asks for this scene and these images again; empty where no command line asked
+    /// The part of a command line that asks for this scene and these images again; empty if no command line asked
     /// for it.
     [[nodiscard]] const std::string& arguments() const { return arguments_; }
     [[nodiscard]] const TetMeshCounts& counts() const { return counts_; }
@@ -44,7 +44,7 @@ public:
     [[nodiscard]] std::size_t rays_per_view() const { return std::size_t{width_} * height_; }
     /// Seconds for locating the origins of all views.
     [[nodiscard]] double locate_s() const { return locate_s_; }
-    /// How the camera's walk from view to view found them; empty where each was located on its own.
+    /// How the camera's walk from view to view found them; empty if each was located on its own.
     [[nodiscard]] const std::optional<StartWalk>& start_walk() const { return start_walk_; }
 
     /// Packs at the first call; later calls return the same object. Throws Error{unsupported} as pack() and pack_bvh()
@@ -63,7 +63,7 @@ public:
     /// The number of a view's rays of a kind that enter the domain, counted at the first call. order: of given rays.
     [[nodiscard]] std::uint64_t entering(RayKind kind, RayOrder order, std::size_t view);
 
-    /// The tet of the scene that contains a view's origin; NO_TET where the origin is outside the domain.
+    /// The tet of the scene that contains a view's origin; NO_TET if the origin is outside the domain.
     [[nodiscard]] std::uint32_t start_tet(std::size_t view) const { return start_tets_.at(view); }
 
     /// Host threads used for all work.

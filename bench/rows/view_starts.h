@@ -21,7 +21,7 @@ struct ViewStarts {
 };
 
 /// Finds the starts of views, in their order. In the wide domain each is found from the one before, and compared with
-/// exact location. Throws Error{internal} where the two differ.
+/// exact location. Throws Error{internal} if the two differ.
 [[nodiscard]] ViewStarts find_starts(const Scene& scene, const std::vector<Float3>& origins);
 
 } // namespace tetrace

@@ -13,7 +13,7 @@ namespace tetrace {
 
 namespace {
 
-/// With an empty line after it; nothing where the table has no rows.
+/// With an empty line after it; nothing for an empty table.
 void add_table(Sheet& sheet, const Table& table)
 {
     if (table.rows().empty()) return;

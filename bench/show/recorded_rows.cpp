@@ -49,7 +49,7 @@ std::uint64_t steps_of(const ResultValue& counts, const char* mean, std::uint64_
     return steps > 0 && steps < 1e18 ? static_cast<std::uint64_t>(std::llround(steps)) : 0;
 }
 
-/// What results from before their keys tell by others.
+/// What results from before these keys have in others.
 void read_older(RowRecord& record, const ResultValue& value)
 {
     Traced* const result = std::get_if<Traced>(&record.outcome);

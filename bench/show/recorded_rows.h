@@ -6,7 +6,7 @@
 namespace tetrace {
 
 /// The rows of a result of `bench`, `check` or `reproduce`. Throws Error{invalid_input} naming the file and the key if
-/// this tetrace has no such row, or if the row lacks what its status needs.
+/// this tetrace lacks the row, or if the row lacks what its status needs.
 [[nodiscard]] std::vector<RowRecord> read_rows(const ResultFile& file);
 
 /// The rows of searches of a result of `reproduce`, in the same way, but without their answers: batches have those.

@@ -51,10 +51,10 @@ std::vector<Pulse> pulses_of(const ResultValue& section)
         Pulse& pulse = pulses.emplace_back(Pulse{value.at("of").line(), {}});
         for (const ResultValue& reading : value.at("readings").items()) {
             const auto pair = reading.items();
-            if (pair.size() != 2 || pair[1].number() <= 0) reading.reject("is no reading: [when, seconds] is");
+            if (pair.size() != 2 || pair[1].number() <= 0) reading.reject("is not a reading: write [when, seconds]");
             pulse.readings.push_back({pair[0].number(), pair[1].number()});
         }
-        if (pulse.readings.empty()) value.reject("is a pulse without a reading");
+        if (pulse.readings.empty()) value.reject("is a calibration without readings");
     }
     return pulses;
 }

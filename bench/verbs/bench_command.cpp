@@ -74,7 +74,7 @@ int bench_command(const Options& options)
     const BenchResult result = run_bench(keys, options, flags, [&](const SeenImage& image) { journal.see(image); });
     journal.write();
     const Report report = bench_report(result, options);
-    // Google Benchmark has already written its own form to standard output, where it was asked to.
+    // Google Benchmark has already written its own format to standard output, if it was asked to.
     if (!flags.format)
         deliver(options, report);
     else if (options.out)

@@ -15,7 +15,7 @@ namespace {
 /// A combination and its result.
 struct Built {
     SceneRequest request;
-    std::optional<nlohmann::json> scene; ///< empty where it failed
+    std::optional<nlohmann::json> scene; ///< empty if it failed
     TetMeshCounts counts;
     std::string switches;    ///< as passed; empty where TetGen did not run
     OptimisedInfo optimised; ///< what the optimiser of tets did
@@ -153,9 +153,9 @@ std::vector<Column> columns(bool with_reason)
                                 {"cost_before", "cost", "before"},
                                 {"cost_after", "cost", "after"},
                                 {"from_cache", "cached"},
-                                {"mean_steps", "steps", "a ray"},
-                                {"mean_steps_hit", "steps", "a hit"},
-                                {"mean_steps_miss", "steps", "a miss"},
+                                {"mean_steps", "steps", "per ray"},
+                                {"mean_steps_hit", "steps", "per hit"},
+                                {"mean_steps_miss", "steps", "per miss"},
                                 {"hits_percent", "hits", "%", 1},
                                 {"lost", "lost", "rays"}};
     if (with_reason) list.push_back({"reason", "reason"});
@@ -216,7 +216,7 @@ void add_optimiser(Sheet& sheet, const std::vector<Built>& all, const Built& bui
     if (made.operations.empty()) return;
     std::string steps;
     if (const Built* cdt = find_cdt(all, built))
-        steps = fmt::format("; steps a ray {:.2f} in the CDT, {:.2f} now", mean_steps(cdt->totals).all.value_or(0),
+        steps = fmt::format("; steps per ray {:.2f} in the CDT, {:.2f} now", mean_steps(cdt->totals).all.value_or(0),
                             mean_steps(built.totals).all.value_or(0));
     Table table({{"operation", "operation"},
                  {"done", "done"},

@@ -85,7 +85,7 @@ void require_selected(const std::vector<RowKey>& keys, const std::vector<std::st
                                     name));
 }
 
-/// checked: also what there is of it where the check ends early.
+/// checked: also what is done if the check ends early.
 int check(const Options& options, Checked& checked)
 {
     require_devices(options.required); // first: its reason for an empty selection is better
@@ -174,7 +174,7 @@ int check_command(const Options& asked)
     try {
         code = check(options, checked);
     } catch (const Error& error) {
-        // Whoever reads the XML alone must not take a check without a result for a good one.
+        // Whoever reads only the XML must not take a check without a result for a good one.
         if (error.kind() != ErrorKind::interrupted) write_junit(checked.rows, options, error.what());
         throw;
     }

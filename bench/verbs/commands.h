@@ -41,7 +41,7 @@ void require_judged(const std::vector<RowRecord>& rows, const std::vector<std::s
 /// `check --defects`. options: with the default layouts of check.
 int check_defects(const Options& options);
 
-/// Throws Error{missing} naming the first backend of the list that has no usable device, with the reason.
+/// Throws Error{missing} naming the first backend of the list without a usable device, with the reason.
 void require_devices(const std::vector<std::string>& backends);
 
 /// The command line that run_program() was given, with one more option unless it has that, as a shell takes it.
@@ -57,10 +57,11 @@ void write_junit(const std::vector<RowRecord>& rows, const Options& options, con
 /// What a long run says where it is interrupted and keeps nothing: how to begin again. Empty for a short one.
 [[nodiscard]] std::string words_when_begun(const Options& options);
 
-/// What a program does besides help and version.
+/// What a program does in addition to help and version.
 struct Verbs {
     int (*run)(const Options& options);
-    /// What the program is started for by itself, with a first word that is no verb for users; empty for other words.
+    /// What the program is started for by itself, with a first word that is not a verb for users; empty for other
+    /// words.
     std::optional<int> (*run_unlisted)(const std::vector<std::string>& arguments) = nullptr;
 };
 

@@ -25,7 +25,7 @@ struct ApiDevice {
     Device device;
     std::size_t physical = 0; ///< devices with equal numbers are one piece of hardware
     std::optional<SelfTest> self_test;
-    std::string self_test_text; ///< or why it failed; empty where the API runs none of our kernels
+    std::string self_test_text; ///< or why it failed; empty if the API runs none of our kernels
 };
 
 void run_self_test(ApiDevice& found, Backend& backend, std::size_t index)

@@ -1,4 +1,4 @@
-// tetrace-first: `tetrace bench` alone, so that a new machine has a table before the rest is compiled (make first).
+// tetrace-first: only `tetrace bench`, so that a new machine has a table before the rest is compiled (make first).
 #include "bench/verbs/commands.h"
 #include "core/base/error.h"
 
@@ -8,7 +8,7 @@ int run_verb(const tetrace::Options& options)
 {
     if (options.verb == tetrace::Verb::bench) return tetrace::bench_command(options);
     throw tetrace::Error(tetrace::ErrorKind::usage,
-                         "tetrace-first has the verb bench alone; `make build` builds tetrace, which has all of them");
+                         "tetrace-first has only the verb bench; `make build` builds tetrace, which has all of them");
 }
 
 } // namespace

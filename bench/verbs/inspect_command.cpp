@@ -37,7 +37,7 @@ int inspect_command(const Options& options)
     if (has([](const Inspected& row) { return row.status == InspectedStatus::error; }))
         return exit_code(ErrorKind::internal);
     if (!has([](const Inspected& row) { return row.status == InspectedStatus::ok; }))
-        throw Error(ErrorKind::missing, "inspect: no target could be asked");
+        throw Error(ErrorKind::missing, "inspect: no target could be compiled for");
     return 0;
 }
 

@@ -115,7 +115,7 @@ Merged merged_check(const Shards& shards, const Options& options)
             })};
 }
 
-/// Throws Error{usage} where another machine than the shards' has other default scenes.
+/// Throws Error{usage} if another machine than the shards' has other default scenes.
 void require_scenes(const std::vector<SceneBuild>& builds, const std::vector<RowRecord>& rows)
 {
     for (const RowRecord& row : rows)

@@ -47,7 +47,7 @@ std::string words_when_begun(const Options& options)
     if (!is_long) return {};
     const char* kept = options.verb == Verb::build    ? "scenes that were built before are in the cache"
                        : options.verb == Verb::render ? "pictures that were written before are whole"
-                                                      : "an earlier result is as it was";
+                                                      : "an earlier result is unchanged";
     const char* hint = options.verb == Verb::bench ? "; --budget, --views or --size make it shorter"
                        : options.verb == Verb::reproduce && !options.out ? "; with --out FILE.json, --resume can go on"
                                                                          : "";

@@ -86,7 +86,7 @@ std::vector<Shard> wait_for_all(const fs::path& all, const Rank& rank, double wa
     return waiting;
 }
 
-/// What does a shard alone as its rank did: a rank may have had fewer threads than a process alone.
+/// What does a shard by itself as its rank did: a rank may have had fewer threads than a single process.
 std::string command_for(const Shard& shard, const fs::path& all, const Options& options)
 {
     constexpr std::string_view replaced[] = {"--out", "--format", "--wait", "--resume", "--threads"};
@@ -109,8 +109,8 @@ std::string command_for(const Shard& shard, const fs::path& all, const Options& 
     merge.insert(merge.end(), files.begin(), files.end());
     merge.insert(merge.end(), {"--out", all.string()});
     throw Error(ErrorKind::missing,
-                fmt::format("{} of {} ranks ended without a result. Run them again alone, then merge:"
-                            "{}\n  {}",
+                fmt::format("{} of {} ranks ended without a result. Run those again, then merge:{}\n"
+                            "  {}",
                             lost.size(), lost.front().of, commands, command_of(merge)));
 }
 

@@ -12,7 +12,7 @@ namespace tetrace {
 
 namespace {
 
-/// The page of all results in folders. What is no result there is left out.
+/// The page of all results in folders. Other files there are left out.
 std::string page_of_folders(const Options& options, const std::vector<std::filesystem::path>& files)
 {
     const Campaign campaign = read_campaign(files);

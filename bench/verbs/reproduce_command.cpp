@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-/// None if the shard has no view.
+/// None if the shard is without views.
 std::vector<SceneBuild> builds_of_shard(const Options& options)
 {
     if (selected_views(options).empty()) return {};
@@ -110,7 +110,7 @@ std::unique_ptr<Journal> open_journal(const Options& options, const std::vector<
     return std::make_unique<Journal>(options.out->string() + ".journal", journal_head(options, builds), options.resume);
 }
 
-/// Throws Error{usage} where the journal has a line that belongs to none of these builds.
+/// Throws Error{usage} if the journal has a line that belongs to none of these builds.
 void check_entries(const Journal& journal, const std::vector<SceneBuild>& builds)
 {
     const auto is_of_build = [&](const json& entry) {
@@ -119,11 +119,10 @@ void check_entries(const Journal& journal, const std::vector<SceneBuild>& builds
     };
     for (const json& entry : journal.entries())
         if (!entry.contains("batch") && !entry.contains("yardstick") && !entry.contains("setup") && !is_of_build(entry))
-            journal.reject(
-                "the journal has a line that is of no view of these scenes, no batch, no build and no yardstick");
+            journal.reject("the journal has an entry that does not belong to this run");
 }
 
-/// Data kept in files next to the result's; null where the result has no file.
+/// Data kept in files next to the result's; null without a result file.
 struct Keeping {
     Keeping(const Options& options, const std::vector<SceneBuild>& builds)
         : journal(open_journal(options, builds)), yardsticks(journal.get()), costs(journal.get()),
@@ -194,7 +193,8 @@ int reproduce_command(const Options& asked)
     const auto builds = builds_of_shard(options);
     const bool searches = wants(options, PaperTarget::table5) && searches_of_shard(options);
     if (builds.empty() && !searches)
-        throw Error(ErrorKind::usage, fmt::format("--shard {}: no view and no batch of searches is left for it",
+        throw Error(ErrorKind::usage, fmt::format("--shard {}: this shard would be empty: neither a view nor a "
+                                                  "batch of searches",
                                                   text_of(shard_of(options))));
     all.missing_devices = missing_devices(options);
     Keeping keeping(options, builds);

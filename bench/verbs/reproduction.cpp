@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Adds all methods of the paper where none of the CDT is named. Throws Error{usage} where table6 lacks the
+/// Adds all methods of the paper where none of the CDT is named. Throws Error{usage} if table6 lacks the
 /// methods that it needs.
 void add_methods(Options& options)
 {
@@ -30,7 +30,7 @@ void add_methods(Options& options)
         if (kernel.structure == Structure::cdt) options.methods.push_back(kernel.method);
 }
 
-/// 0 where nothing was timed.
+/// 0 if nothing was timed.
 unsigned samples_of(const Reproduction& all, const Options& options)
 {
     const bool timed =
@@ -67,7 +67,7 @@ json reproduction_json(const Reproduction& all, const Options& options)
     return {{"tetrace", std::move(section)}};
 }
 
-/// Empty where nothing was timed, or no pulse was taken, as by `merge`.
+/// Empty if nothing was timed, or no pulse was taken, as by `merge`.
 std::string trust_of(const Reproduction& all)
 {
     Steadiness steadiness = all.steadiness;

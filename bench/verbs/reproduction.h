@@ -25,11 +25,11 @@ struct Reproduction {
 };
 
 /// The options with what is not named: all methods of the paper, and its scenes that are available here, else the
-/// embedded one. missing: gets a sentence for each of them that is not. Throws Error{usage} where table6 lacks
+/// embedded one. missing: gets a sentence for each of them that is not. Throws Error{usage} if table6 lacks
 /// the methods that it needs.
 [[nodiscard]] Options with_defaults(Options options, std::vector<std::string>& missing);
 
-/// Throws Error{usage} where two scenes would have the same name.
+/// Throws Error{usage} if two scenes would have the same name.
 void check_labels(const std::vector<SceneBuild>& builds);
 
 /// Makes the tables and figures that were asked for of what was traced.

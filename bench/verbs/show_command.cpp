@@ -18,7 +18,7 @@ std::string made_by(const ResultFile& file)
                        file.head.commit, file.head.machine, file.head.system);
 }
 
-/// Of a result of `reproduce`: empty where nothing was timed, or where its version took no pulse.
+/// Of a result of `reproduce`: empty if nothing was timed, or where its version took no pulse.
 std::string trust_of(const ResultFile& file)
 {
     const Steadiness steadiness = read_steadiness(file.section());

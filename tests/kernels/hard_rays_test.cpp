@@ -87,7 +87,7 @@ void expect_none_wrong_or_lost(const Scene& scene, const char* name)
 {
     const auto [verdicts, flawed, first] = judged_on_openmp(scene, rays_wanted(40'000));
     const std::string counts = fmt::format(
-        "{}: {} rays: {} agree, {} settled for us, {} ties, {} lost, {} wrong; flawed by kind {}", name, verdicts.rays,
+        "{}: {} rays: {} agree, {} settled, {} ties, {} lost, {} wrong; flawed by kind {}", name, verdicts.rays,
         verdicts.agreed, verdicts.settled, verdicts.ties, verdicts.lost, verdicts.wrong, fmt::join(flawed, " "));
     fmt::print("{}\n", counts);
     EXPECT_EQ(verdicts.lost, 0u) << counts << "; " << first;

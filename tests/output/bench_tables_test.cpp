@@ -106,7 +106,7 @@ TEST_F(BenchTables, a_run_ends_with_its_answer_and_whether_to_trust_it)
     EXPECT_TRUE(
         contains(quiet, "APIs by openmp's rate, medians over the kernels: cuda-host 1.00, opencl 1.00, vulkan 1.00"))
         << quiet;
-    EXPECT_TRUE(contains(quiet, "others used 0.05 of 2 processors while measuring")) << quiet;
+    EXPECT_TRUE(contains(quiet, "other processes used 0.05 of 2 CPUs while measuring")) << quiet;
     EXPECT_FALSE(contains(quiet, "do not trust")) << quiet;
     result_.measurement.load->others = 1.3;
     EXPECT_TRUE(contains(unwrapped(), "do not trust these rates")) << unwrapped();
@@ -191,7 +191,7 @@ TEST_F(BenchTables, the_fastest_bvh_is_that_of_all_bvh_rows_of_the_hardware)
 TEST_F(BenchTables, rows_stand_by_device_under_what_they_may_be_ranked_with)
 {
     const std::string text = rate_table("bunny", result_).text();
-    const auto cpu = text.find("CPU (cpu)"), openmp = text.find("openmp  "), emulated = text.find("emulated by"),
+    const auto cpu = text.find("CPU (cpu)"), openmp = text.find("openmp  "), emulated = text.find("emulated on"),
                opencl = text.find("opencl  "), gpu = text.find("H200 (gpu)"), cuda = text.find("cuda   ");
     for (const auto place : {cpu, openmp, emulated, opencl, gpu, cuda})
         ASSERT_NE(place, std::string::npos) << text;

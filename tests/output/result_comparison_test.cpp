@@ -151,9 +151,9 @@ TEST_F(ResultComparisons, a_machine_that_was_itself_slower_makes_no_regression)
     const Json after = with_pulse(result_of({timed_row("one", 6)}), 0.06);
     const auto comparison = compare(before, after);
     EXPECT_EQ(comparison.rows[0].verdict(), "NOISY");
-    EXPECT_EQ(comparison.rows[0].note(), "the same machine's pulse took 6.00 times as long in B as in A");
+    EXPECT_EQ(comparison.rows[0].note(), "the same machine's calibration took 6.00 times as long in B as in A");
     EXPECT_TRUE(comparison.regressions(false).empty());
-    EXPECT_EQ(compare(after, before).rows[0].note(), "the same machine's pulse took 6.00 times as long in A as in B");
+    EXPECT_EQ(compare(after, before).rows[0].note(), "the same machine's calibration took 6.00 times as long in A as in B");
     EXPECT_EQ(compare(before, with_pulse(result_of({timed_row("one", 6)}), 0.0124)).rows[0].verdict(), "SLOWER")
         << "a pulse that kept its time leaves the row its verdict";
 }
@@ -183,7 +183,7 @@ TEST_F(ResultComparisons, a_row_whose_pulse_moved_within_its_run_is_noisy)
     const Json quiet = result_of({timed_row("one", 1)});
     Json moved = result_of({timed_row("one", 2)});
     moved["tetrace"]["rows"][0]["times"]["pulse"] = 1.25;
-    EXPECT_EQ(compare(quiet, moved).rows[0].note(), "in B the pulse beside its samples took 1.25 times its fastest");
+    EXPECT_EQ(compare(quiet, moved).rows[0].note(), "in B calibration during its samples took 1.25 times its fastest");
     EXPECT_EQ(compare(moved, quiet).rows[0].verdict(), "NOISY");
     Json few = moved;
     few["tetrace"]["rows"][0]["times"]["samples_s"] = {2.0, 2.0, 2.0};
@@ -262,10 +262,10 @@ TEST_F(ResultComparisons, of_nothing_is_refused)
     check["tetrace"]["verb"] = "check";
     check["tetrace"]["rows"][0].erase("times");
     EXPECT_TRUE(contains(refused(check, timed), "(of 'tetrace check')"));
-    EXPECT_TRUE(contains(refused(check, timed), "A has no row with samples"));
+    EXPECT_TRUE(contains(refused(check, timed), "A lacks rows with samples"));
     EXPECT_TRUE(contains(refused(result_of({}), result_of({})), "neither has a row"));
-    EXPECT_TRUE(contains(refused(timed, result_of({timed_row("two", 1)})), "no row in common"));
-    EXPECT_TRUE(contains(refused(timed, result_of({})), "no row in common"));
+    EXPECT_TRUE(contains(refused(timed, result_of({timed_row("two", 1)})), "share no row"));
+    EXPECT_TRUE(contains(refused(timed, result_of({})), "share no row"));
     EXPECT_TRUE(contains(refused(timed, timed, "nothing"), "--filter 'nothing' matches no row"));
     // A check after a bench: nothing is as fast as before.
     EXPECT_EQ(compare(timed, check).rows[0].verdict(), "MISSING");

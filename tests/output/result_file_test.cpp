@@ -162,7 +162,7 @@ TEST_F(ResultFiles, that_is_no_json_or_was_cut_off_names_file_and_place)
 
 TEST_F(ResultFiles, that_is_another_programs_json_is_no_result)
 {
-    EXPECT_TRUE(contains(error_of_text("{\"context\": {}, \"benchmarks\": []}"), "no section 'tetrace'"));
+    EXPECT_TRUE(contains(error_of_text("{\"context\": {}, \"benchmarks\": []}"), "section 'tetrace' is missing"));
     EXPECT_TRUE(contains(error_of_text("[1, 2]"), "is not an object (array)"));
     EXPECT_TRUE(contains(error_of_text("{\"tetrace\": 3}"), "tetrace: is not an object (number)"));
 }

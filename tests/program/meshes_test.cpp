@@ -148,7 +148,7 @@ TEST_F(Meshes, built_for_rays_are_listed_with_what_each_operation_brought)
     EXPECT_LT(rays["cost_after"], rays["cost_before"]);
     EXPECT_LT(rays["mean_steps"], cdt["mean_steps"]);
     EXPECT_TRUE(contains(ended.out, fmt::format("ball (tight, 8), the optimiser in {} rounds: cost {:.2f} before, "
-                                                "{:.2f} after; steps a ray {:.2f} in the CDT, {:.2f} now\n",
+                                                "{:.2f} after; steps per ray {:.2f} in the CDT, {:.2f} now\n",
                                                 made["rounds"].get<int>(), rays["cost_before"].get<double>(),
                                                 rays["cost_after"].get<double>(), cdt["mean_steps"].get<double>(),
                                                 rays["mean_steps"].get<double>())))

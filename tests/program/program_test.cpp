@@ -64,7 +64,7 @@ TEST_F(Program, report_of_a_folder_is_the_page_of_a_campaign)
     std::filesystem::create_directory(folder_ / "empty");
     const Ended empty = run("report empty");
     EXPECT_EQ(empty.code, 2);
-    EXPECT_TRUE(contains(empty.errors, "no file in it or below it ends in .json")) << empty.errors;
+    EXPECT_TRUE(contains(empty.errors, "it has no .json file")) << empty.errors;
 }
 
 TEST_F(Program, report_names_what_it_cannot_use)

@@ -60,7 +60,7 @@ TEST_F(Show, prints_whether_to_trust_what_reproduce_timed)
         run("reproduce table3 --backend openmp --views 0-1281:400 --samples 3 --out result.json" + tiny_);
     ASSERT_EQ(first.code, 0) << first.errors;
     EXPECT_TRUE(contains(first.out, "Trust")) << first.out;
-    EXPECT_TRUE(contains(first.out, "the pulse of the host, taken")) << first.out;
+    EXPECT_TRUE(contains(first.out, "calibration of the host: ")) << first.out;
     EXPECT_EQ(without_head(run("show result.json").out), without_result(first.out));
 }
 

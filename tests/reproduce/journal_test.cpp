@@ -161,9 +161,9 @@ TEST_F(Journals, of_an_older_tetrace_is_refused_unless_its_run_ended)
     const std::string old = json{{"journal", head_}}.dump() + "\n" + json{{"view", 1}}.dump() + "\n";
     write_file(path_, old);
     EXPECT_TRUE(contains(error_of([&] { (void)resumed(head_); }), "usage: '"));
-    EXPECT_TRUE(contains(error_of([&] { Journal(path_, head_, false); }), "have no checksums; end that run with its"));
+    EXPECT_TRUE(contains(error_of([&] { Journal(path_, head_, false); }), "lack checksums; end that run with its"));
     write_file(path_, old + "{\"finished\":true}\n");
-    EXPECT_TRUE(contains(error_of([&] { (void)resumed(head_); }), "have no checksums"));
+    EXPECT_TRUE(contains(error_of([&] { (void)resumed(head_); }), "lack checksums"));
     EXPECT_TRUE(Journal(path_, head_, false).entries().empty()) << "a new one begins";
 }
 
@@ -171,7 +171,7 @@ TEST_F(Journals, in_whose_place_is_no_file_is_refused)
 {
     const auto refused = [&](const std::filesystem::path& path) {
         EXPECT_TRUE(contains(error_of([&] { Journal(path, head_, true); }), "invalid_input: the journal '")) << path;
-        EXPECT_TRUE(contains(error_of([&] { Journal(path, head_, false); }), "is no regular file")) << path;
+        EXPECT_TRUE(contains(error_of([&] { Journal(path, head_, false); }), "is not a regular file")) << path;
     };
     refused(folder_.path());
     refused("/dev/zero");

@@ -57,7 +57,7 @@ TEST(Likeness, another_mesh_is_not_compared_whatever_its_counts)
         likeness_of("armadillo", scene_of(52'000, DomainKind::wide), papers_counts("armadillo", 1));
     EXPECT_EQ(debians.kind, LikenessKind::other_mesh);
     EXPECT_FALSE(debians.is_compared());
-    EXPECT_TRUE(contains(debians.reason, "52,000 triangles, where the paper's counts come from 345,944"));
+    EXPECT_TRUE(contains(debians.reason, "52,000 triangles, but the paper's counts are from 345,944"));
     EXPECT_TRUE(contains(debians.reason, "TETRACE_MESHES"));
     EXPECT_EQ(kind_of("armadillo", 345'944, DomainKind::wide, 1), LikenessKind::papers_counts) << "the user's file";
     EXPECT_EQ(kind_of("bunny", 75'408, DomainKind::wide, 0.99), LikenessKind::papers_counts)

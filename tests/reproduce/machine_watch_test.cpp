@@ -72,7 +72,7 @@ TEST_F(Watched, a_scene_is_noisy_where_the_machine_was_slower_than_in_another)
     watch.pulses().judge_rows(first.rows, {});
     watch.pulses().judge_rows(second.rows, {});
     EXPECT_EQ(first.rows[0].disturbance, "");
-    EXPECT_EQ(second.rows[0].disturbance, "the pulse beside its samples took 6.00 times its fastest");
+    EXPECT_EQ(second.rows[0].disturbance, "calibration during its samples took 6.00 times its fastest");
     EXPECT_TRUE(figures_of(second.rows[0])->noisy);
 }
 

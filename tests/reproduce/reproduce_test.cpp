@@ -142,7 +142,7 @@ TEST_F(Reproduce, table3_has_a_papers_build_of_the_papers_scenes_alone)
     EXPECT_EQ(table["claims"][0]["id"], "armadillo-has-the-papers-counts");
     EXPECT_EQ(table["claims"][0]["verdict"], "not testable here");
     if (ended.code == 0) {
-        EXPECT_TRUE(contains(table["claims"][0]["evidence"], "Another mesh: 8 triangles, where the paper's counts come "
+        EXPECT_TRUE(contains(table["claims"][0]["evidence"], "Another mesh: 8 triangles, but the paper's counts are "
                                                              "from 345,944"));
         EXPECT_EQ(table["rows"].back()["tets_kind"], "rays");
         EXPECT_FALSE(table["rows"].back()["tets"].contains("paper")) << "it has no tets for rays";

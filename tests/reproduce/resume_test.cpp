@@ -66,10 +66,10 @@ TEST_F(Resume, a_damaged_journal_is_refused)
     refused("stoull", [](json&, json& row) { row["chained_hash"] = "none"; });
     refused("no such status", [](json&, json& row) { row = {{"skipped", "so"}, {"status", 99}}; });
     refused("has 9 rays, not 8", [](json&, json& row) { row["verdict"]["totals"][0] = 9; });
-    refused("1e+308 is no number of things", [](json&, json& row) { row["verdict"]["totals"][1] = 1e308; });
-    refused("-1.5 is no number of things", [](json&, json& row) { row["lost_at_cap"] = -1.5; });
+    refused("1e+308 is not a count", [](json&, json& row) { row["verdict"]["totals"][1] = 1e308; });
+    refused("-1.5 is not a count", [](json&, json& row) { row["lost_at_cap"] = -1.5; });
     refused("9 of 8 rays", [](json&, json& row) { row["verdict"]["verdicts"]["counts"][4] = 9; });
-    refused("-1.0 is no number, negative", [](json&, json& row) { row["verdict"]["seconds"][0] = -1.0; });
+    refused("-1.0 is not a number, negative", [](json&, json& row) { row["verdict"]["seconds"][0] = -1.0; });
     const std::string samples = "wants 3 samples, all above 0 s";
     refused(samples, [](json&, json& row) { row["samples_s"] = json::array(); });
     refused(samples, [](json&, json& row) { row["samples_s"][1] = -1e-6; });
@@ -78,15 +78,15 @@ TEST_F(Resume, a_damaged_journal_is_refused)
     refused("wants its GPU's readings of 3 samples", [](json&, json& row) {
         row["gpu"] = {{"states", json::array()}, {"dropped", 1}, {"reasons", "heat"}};
     });
-    EXPECT_TRUE(contains(resumed([](json& entry, json&) { entry = {{"bench", 0}}; }), "of no view of these scenes"));
-    EXPECT_TRUE(contains(resumed([](json& entry, json&) { entry = {{"scene", 7}}; }), "of no view of these scenes"));
+    EXPECT_TRUE(contains(resumed([](json& entry, json&) { entry = {{"bench", 0}}; }), "that does not belong to this run"));
+    EXPECT_TRUE(contains(resumed([](json& entry, json&) { entry = {{"scene", 7}}; }), "that does not belong to this run"));
     refused("number", [](json&, json& row) { row["samples_s"][0] = "fast"; });
 }
 
 TEST_F(Resume, ctrl_c_says_how_to_go_on_or_to_begin_again)
 {
     const std::string long_run = "table4 --size 4096 --views 0-1281";
-    EXPECT_TRUE(contains(interrupted(long_run), "interrupted; an earlier result is as it was. To begin again: tetrace "
+    EXPECT_TRUE(contains(interrupted(long_run), "interrupted; an earlier result is unchanged. To begin again: tetrace "
                                                 "reproduce table4"));
     const std::string resumed = interrupted("table4 --size 96 --views 0-1281 --out r.json", "r.json.journal");
     EXPECT_TRUE(contains(resumed, "what is finished is in 'r.json.journal'; to go on: tetrace reproduce")) << resumed;
@@ -124,7 +124,7 @@ TEST_F(Resume, a_damaged_yardstick_in_the_journal_is_refused)
     write_file(folder_ / "r.json.journal", journal_of(journal));
     const Ended ended = run(arguments + " --resume");
     EXPECT_EQ(ended.code, 2);
-    EXPECT_TRUE(contains(ended.errors, "a yardstick in the journal is damaged; remove 'r.json.journal'"));
+    EXPECT_TRUE(contains(ended.errors, "a microbenchmark in the journal is damaged; remove 'r.json.journal'"));
 }
 
 TEST_F(Resume, table5_goes_on_after_kill_9_to_the_same_result)

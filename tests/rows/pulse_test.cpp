@@ -91,10 +91,10 @@ TEST(Pulse, disturbs_from_a_quarter_on_and_load_from_a_tenth_of_each_processor)
 {
     const MachineLoad quiet{0.2, 2, 2}, busy{1.3, 2, 2};
     EXPECT_EQ(disturbance_text(1.24, &quiet), "");
-    EXPECT_EQ(disturbance_text(1.25, &quiet), "the pulse beside its samples took 1.25 times its fastest");
+    EXPECT_EQ(disturbance_text(1.25, &quiet), "calibration during its samples took 1.25 times its fastest");
     EXPECT_EQ(disturbance_text({}, &busy), "others used 1.30 of 2 processors");
     EXPECT_EQ(disturbance_text(6.0, &busy),
-              "the pulse beside its samples took 6.00 times its fastest; others used 1.30 of 2 processors");
+              "calibration during its samples took 6.00 times its fastest; other processes used 1.30 of 2 CPUs");
 }
 
 TEST_F(Pulsed, rows_of_a_machine_that_keeps_its_speed_are_not_noisy)
@@ -126,7 +126,7 @@ TEST_F(Pulsed, a_row_is_noisy_where_the_machine_was_slower_beside_half_of_its_sa
         EXPECT_EQ(row.pulse_ratio, 6.0);
         EXPECT_FALSE(figures_of(row)->kernel_s.noisy());
         EXPECT_TRUE(figures_of(row)->noisy);
-        EXPECT_EQ(row.disturbance, "the pulse beside its samples took 6.00 times its fastest");
+        EXPECT_EQ(row.disturbance, "calibration during its samples took 6.00 times its fastest");
         EXPECT_EQ(status_of(row), Status::ok) << "its answers are right all the same";
     }
 }
@@ -181,7 +181,7 @@ TEST_F(Pulsed, a_gpu_has_a_pulse_of_its_own_which_load_of_the_host_does_not_touc
     pulses.take();
     pulses.judge_rows(rows_, MachineLoad{1.0, 2, 2});
     EXPECT_EQ(rows_[0].pulse_ratio, 1.0);
-    EXPECT_EQ(rows_[1].disturbance, "the pulse beside its samples took 2.00 times its fastest");
+    EXPECT_EQ(rows_[1].disturbance, "calibration during its samples took 2.00 times its fastest");
     ASSERT_EQ(pulses.found().size(), 2u);
     EXPECT_EQ(pulses.found()[1].of, "a GPU");
 }

@@ -123,7 +123,7 @@ TEST(RowDevices, a_device_that_fails_keeps_the_reason_and_the_others_are_measure
     good.measure = [] { return Yardstick{1e9, 1e-6}; };
     auto devices = devices_of(list(row_of(lost), row_of(good)));
     measure_devices(devices, {}, {&lost, &good});
-    EXPECT_EQ(devices[0].problem, "yardstick: the device was lost");
+    EXPECT_EQ(devices[0].problem, "microbenchmark: the device was lost");
     EXPECT_EQ(devices[1].problem, "");
     EXPECT_TRUE(devices[1].yardstick.has_value());
 }

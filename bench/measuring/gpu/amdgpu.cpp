@@ -19,7 +19,7 @@ std::string text_of(const fs::path& file)
     return file_bytes(file).value_or(""); // a sensor of a GPU that sleeps may answer with an error
 }
 
-/// Its number, scaled; empty where there is none.
+/// Its number, scaled; empty if there is none.
 std::optional<double> number_in(const fs::path& file, double scale)
 {
     const std::string text = text_of(file);
@@ -75,7 +75,7 @@ private:
     fs::path folder_, sensors_;
 };
 
-/// The folder of sensors that the driver calls amdgpu; empty where there is none.
+/// The folder of sensors that the driver calls amdgpu; empty if there is none.
 fs::path sensors_of(const fs::path& folder)
 {
     std::error_code ignored; // no such folder: not this driver's device

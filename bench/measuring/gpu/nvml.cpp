@@ -13,7 +13,7 @@ using Handle = struct nvmlDevice_st*;
 constexpr int success = 0;
 constexpr unsigned clock_of_multiprocessors = 1, clock_of_memory = 2, sensor_of_gpu = 0;
 
-/// Why clocks are held down; what users set, and idling, is no throttling.
+/// Why clocks are held down; what users set, and idling, is not throttling.
 struct Reason {
     unsigned long long bit;
     const char* text;

@@ -17,7 +17,7 @@ namespace tetrace {
 class Monitors {
 public:
     explicit Monitors(FindMonitor find) : find_(std::move(find)) {}
-    /// Null where nothing tells about the row's device. The first call for a device may take a second.
+    /// Null if nothing reports about the row's device. The first call for a device may take a second.
     [[nodiscard]] GpuMonitor* of(const RowRun& row);
 
 private:
@@ -26,7 +26,7 @@ private:
 };
 
 /// The timed rows on GPUs, then those on the host, which include emulated ones; those groups that have any. Samples are
-/// interleaved within a group alone, so that no GPU rests while a processor works.
+/// interleaved only within a group, so that no GPU rests while a CPU works.
 [[nodiscard]] std::vector<std::vector<RowRun*>> sample_groups(std::vector<RowRun>& rows);
 
 /// Passes that make a sample at least so long; max_passes at most. pass_s: device seconds of one.
@@ -45,7 +45,7 @@ struct Sample {
 /// Takes samples of any work that can be done several times in a row.
 class Sampler {
 public:
-    /// Does the work so many times between two readings of the device's clock; returns the seconds of all of them.
+    /// Does the work this many times between two readings of the device's clock; returns the seconds of all of them.
     /// meanwhile: to be called while the device does the last part of it; may be empty.
     using Work = std::function<LaunchTimes(std::uint32_t passes, const std::function<void()>& meanwhile)>;
 
@@ -60,8 +60,8 @@ public:
     void warmed_up(RowRun& row, double pass_s) const;
 
     /// Takes a sample of row.passes passes, which grow where they were too short. Launching and waiting are those of a
-    /// pass that is done alone before it, since several passes share theirs. Where the GPU was throttled meanwhile, the
-    /// sample is taken again, twice at most. row.readings has what its GPU told. Throws what the work throws.
+    /// pass that is done by itself before it, since several passes share theirs. If the GPU was throttled meanwhile,
+    /// the sample is taken again, twice at most. row.readings has what its GPU told. Throws what the work throws.
     [[nodiscard]] Sample take(RowRun& row, const Work& work) const;
 
 private:

@@ -46,7 +46,7 @@ std::string paid_text(const PaidBuild& paid)
     return fmt::format("{:.2g} G, {}", 1e-9 * paid.rays, seconds_text(paid.tracing_s));
 }
 
-/// Reads a number that there is only of builds that are paid later.
+/// Reads a number that only builds that pay off later have.
 auto if_later(double PaidBuild::*number, double factor)
 {
     return [=](const PaidBuild& paid) {

@@ -62,7 +62,7 @@ double products_in(int operations, const Products& products, Method method)
 {
     const int rest = operations - products.shared;
     if (rest % products.each != 0)
-        throw Error(ErrorKind::internal, fmt::format("{} operations of {} are no whole number of side products",
+        throw Error(ErrorKind::internal, fmt::format("{} operations of {} are not a whole number of side products",
                                                      operations, name_of(method)));
     return static_cast<double>(rest / products.each);
 }

@@ -15,7 +15,7 @@ struct MethodCost {
     int least = 0, most = 0; ///< operations of a search
     double mean = 0;
     double mean_error = 0;                ///< standard error of the mean over these searches
-    std::optional<double> products;       ///< side products of a search, on average; empty where it has none (plane)
+    std::optional<double> products;       ///< side products of a search, on average; empty if it has none (plane)
     double products_error = 0;            ///< standard error of that mean
     std::optional<double> max_products;   ///< of a single search
     std::optional<double> start_products; ///< in the tet where a ray starts
@@ -26,7 +26,7 @@ struct MethodCost {
 inline constexpr std::uint32_t counted_tets = 500, counted_rays = 64;
 
 /// The costs of the exit searches, in the order of all_kernels(). The same on every machine. Throws Error{internal}
-/// where a count is no whole number of side products.
+/// if a count is not a whole number of side products.
 [[nodiscard]] std::vector<MethodCost> count_operations();
 
 /// Bytes by which a packed scene grows with a tet. layout: of tets that hold their corners.
