@@ -1,13 +1,12 @@
-// methods/: the exit-face searches, one file each, and what several of them share.
+// Method maria: exit face by two side products in the frame of the complement vertex.
+// Source: Maria, Horna, Aveneau, "Efficient Ray Traversal of Constrained Delaunay Tetrahedralization", GRAPP 2017,
+// sections 3.1 to 3.4. 28 operations per step: 9 + 3 for the moment, twice 3 + 5 for a side product.
 #ifndef TETRACE_KERNELS_METHODS_MARIA_H
 #define TETRACE_KERNELS_METHODS_MARIA_H
 
 #include "kernels/layouts/faces.h"
 #include "kernels/methods/edge_sides.h"
 
-// Method maria: exit face by two side products in the frame of the complement vertex.
-// Source: Maria, Horna, Aveneau, "Efficient Ray Traversal of Constrained Delaunay Tetrahedralization", GRAPP 2017,
-// sections 3.1 to 3.4. 28 operations per step: 9 + 3 for the moment, twice 3 + 5 for a side product.
 #define TAKES_RAYS // the other methods are compared on primary rays, as in the paper
 
 KERNEL_FN uint exit_face(SceneView scene, uint tet, uint entry, Ray ray)
