@@ -33,7 +33,7 @@ PackedScene some_scene(std::uint32_t seed)
     scene.tets = some_quads(seed + 20);
     scene.triangles = some_quads(5);
     scene.lines = {1, 2, seed};
-    scene.entry_links = {seed, 5};
+    scene.entry_half_faces = {seed, 5};
     return scene;
 }
 

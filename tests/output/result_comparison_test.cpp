@@ -153,7 +153,8 @@ TEST_F(ResultComparisons, a_machine_that_was_itself_slower_makes_no_regression)
     EXPECT_EQ(comparison.rows[0].verdict(), "NOISY");
     EXPECT_EQ(comparison.rows[0].note(), "the same machine's calibration took 6.00 times as long in B as in A");
     EXPECT_TRUE(comparison.regressions(false).empty());
-    EXPECT_EQ(compare(after, before).rows[0].note(), "the same machine's calibration took 6.00 times as long in A as in B");
+    EXPECT_EQ(compare(after, before).rows[0].note(),
+              "the same machine's calibration took 6.00 times as long in A as in B");
     EXPECT_EQ(compare(before, with_pulse(result_of({timed_row("one", 6)}), 0.0124)).rows[0].verdict(), "SLOWER")
         << "a pulse that kept its time leaves the row its verdict";
 }

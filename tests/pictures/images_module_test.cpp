@@ -107,5 +107,5 @@ TEST_F(ImagesModule, other_endings_are_refused_with_the_accepted_ones)
 
 TEST_F(ImagesModule, an_empty_picture_is_refused)
 {
-    EXPECT_TRUE(contains(refusal(folder_ / "a.png", Pixmap{}), "no pixels"));
+    EXPECT_TRUE(contains(refusal(folder_ / "a.png", Pixmap{}), "the picture is empty"));
 }

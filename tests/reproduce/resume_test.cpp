@@ -78,8 +78,14 @@ TEST_F(Resume, a_damaged_journal_is_refused)
     refused("wants its GPU's readings of 3 samples", [](json&, json& row) {
         row["gpu"] = {{"states", json::array()}, {"dropped", 1}, {"reasons", "heat"}};
     });
-    EXPECT_TRUE(contains(resumed([](json& entry, json&) { entry = {{"bench", 0}}; }), "that does not belong to this run"));
-    EXPECT_TRUE(contains(resumed([](json& entry, json&) { entry = {{"scene", 7}}; }), "that does not belong to this run"));
+    EXPECT_TRUE(contains(resumed([](json& entry, json&) {
+                             entry = {{"bench", 0}};
+                         }),
+                         "that does not belong to this run"));
+    EXPECT_TRUE(contains(resumed([](json& entry, json&) {
+                             entry = {{"scene", 7}};
+                         }),
+                         "that does not belong to this run"));
     refused("number", [](json&, json& row) { row["samples_s"][0] = "fast"; });
 }
 

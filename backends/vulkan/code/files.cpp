@@ -39,8 +39,8 @@ std::string command_of(const std::string& spirv, const std::string& source, cons
     }
     if (variant.ends_with("_parts")) command += " -DTETS_IN_PARTS";
     if (variant.ends_with("_texels")) command += " -DSCENE_IN_TEXELS";
-    if (variant.ends_with("_leaves_texels")) command += " -DLEAVES_RAYS";
-    if (variant.ends_with("_left_texels")) command += " -DTRACES_LEFT";
+    if (variant.ends_with("_leaves_texels")) command += " -DDEFERS_RAYS";
+    if (variant.ends_with("_left_texels")) command += " -DTRACES_DEFERRED";
     return command + " -o " + spirv + " " + source;
 }
 
