@@ -237,7 +237,7 @@ TEST_F(CampaignPage, leaves_out_what_is_no_result_with_the_reason)
     write_file(nothing / "a.json", "{}");
     EXPECT_TRUE(contains(error_of([&] { static_cast<void>(read_campaign(files_below({nothing.path()}))); }),
                          "none of the 1 files is a result"));
-    EXPECT_TRUE(contains(error_of([&] { static_cast<void>(files_below({folder_ / "none"})); }), "no such file"));
+    EXPECT_TRUE(contains(error_of([&] { static_cast<void>(files_below({folder_ / "none"})); }), "does not exist"));
 }
 
 TEST_F(CampaignPage, names_of_whatever_characters_change_no_markup)

@@ -201,8 +201,8 @@ TEST_F(ResultFiles, with_a_value_of_another_kind_names_its_key)
     refused("/rows/0/hit_hash", "00000000000000FF", "tetrace.rows[0].hit_hash: is not a hash");
     refused("/rows/0/times/samples_s", 1.5, "tetrace.rows[0].times.samples_s: is not an array");
     refused("/rows/0/times/samples_s/1", "1.5", "tetrace.rows[0].times.samples_s[1]: is not a finite number");
-    refused("/rows/0/times/samples_s/1", 0, "samples_s[1]: is no duration");
-    refused("/rows/0/times/samples_s/0", -1.5, "samples_s[0]: is no duration");
+    refused("/rows/0/times/samples_s/1", 0, "samples_s[1]: is not a duration");
+    refused("/rows/0/times/samples_s/0", -1.5, "samples_s[0]: is not a duration");
     refused("/scenes/0/width", -24, "tetrace.scenes[0].width: is not a whole number");
     refused("/scenes/0/views/1", 0.5, "tetrace.scenes[0].views[1]: is not a whole number");
     refused("/rows/0/name", "cdt/\x1b[2J", "tetrace.rows[0].name: holds a control character");

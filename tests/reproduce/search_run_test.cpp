@@ -261,7 +261,7 @@ TEST(SearchRun, rows_on_all_threads_say_how_many)
     EXPECT_EQ(number_cell(table, 1, "threads"), 2);
     EXPECT_EQ(text_cell(table, 1, "faces"), "the same");
     EXPECT_EQ(table.claims[0].verdict, ClaimVerdict::not_testable);
-    EXPECT_TRUE(contains(table.claims[0].evidence, "has no rate beside maria"));
+    EXPECT_TRUE(contains(table.claims[0].evidence, "ms06 and maria do not both have rates"));
 }
 
 TEST(SearchRun, the_fastest_is_told_from_the_rows_on_one_thread)

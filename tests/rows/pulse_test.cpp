@@ -92,7 +92,7 @@ TEST(Pulse, disturbs_from_a_quarter_on_and_load_from_a_tenth_of_each_processor)
     const MachineLoad quiet{0.2, 2, 2}, busy{1.3, 2, 2};
     EXPECT_EQ(disturbance_text(1.24, &quiet), "");
     EXPECT_EQ(disturbance_text(1.25, &quiet), "calibration during its samples took 1.25 times its fastest");
-    EXPECT_EQ(disturbance_text({}, &busy), "others used 1.30 of 2 processors");
+    EXPECT_EQ(disturbance_text({}, &busy), "other processes used 1.30 of 2 CPUs");
     EXPECT_EQ(disturbance_text(6.0, &busy),
               "calibration during its samples took 6.00 times its fastest; other processes used 1.30 of 2 CPUs");
 }
@@ -163,7 +163,7 @@ TEST_F(Pulsed, rows_on_the_host_are_noisy_where_others_used_it)
     pulses.take();
     sample(pulses);
     pulses.judge_rows(rows_, MachineLoad{1.0, 2, 2});
-    EXPECT_EQ(rows_[0].disturbance, "others used 1.00 of 2 processors");
+    EXPECT_EQ(rows_[0].disturbance, "other processes used 1.00 of 2 CPUs");
 }
 
 TEST_F(Pulsed, a_gpu_has_a_pulse_of_its_own_which_load_of_the_host_does_not_touch)

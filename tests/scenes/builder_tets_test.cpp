@@ -308,7 +308,7 @@ TEST_F(AbsurdOutput, names_missing_tets)
 {
     output_.tets.clear();
     output_.neighbours.clear();
-    expect_absurd("no tets");
+    expect_absurd("without tets");
 }
 
 TEST_F(AbsurdOutput, names_indices_out_of_range)

@@ -42,7 +42,7 @@ TEST(MeshRefusal, names_empty_files_and_unknown_formats)
     expect_error("a.fbx", "glTF", {"'.fbx' is not known", ".ply, .obj, .off, .stl, .glb or .gltf"});
     expect_error("a.off", "ply\n", {"begins with 'ply'", "extension"});
     expect_error("a.ply", tetrahedron_off, {"does not begin with 'ply'"});
-    expect_error("a.obj", tetrahedron_off, {"'OFF' is no keyword", "line 1"});
+    expect_error("a.obj", tetrahedron_off, {"'OFF' is not a keyword", "line 1"});
     expect_error("a.stl", tetrahedron_off, {"neither"});
     expect_error("a.off", "OFF BINARY\n", {"binary OFF", "convert"});
 }
@@ -115,7 +115,7 @@ TEST(MeshRefusal, refuses_elements_without_properties_and_cuts_long_names)
 
 TEST(MeshRefusal, quotes_a_file_without_its_escapes)
 {
-    expect_error("a.obj", "\x1b[2J\xff 1 2 3\n", {"'?[2J?' is no keyword"});
+    expect_error("a.obj", "\x1b[2J\xff 1 2 3\n", {"'?[2J?' is not a keyword"});
     expect_error("a.off", "OFF\x1b]0;x\x07\n", {"it begins with 'OFF?]0;x?'"});
     const std::string named = error_of([] { (void)parse_mesh("a\x1b[2J\n.obj", "v 0 0\n"); });
     EXPECT_TRUE(named.starts_with("invalid_input: ")) << named;
