@@ -119,6 +119,22 @@ TEST_F(Resume, a_run_that_is_interrupted_keeps_the_views_that_it_has_and_goes_on
     EXPECT_EQ(result("r.json").at("rows").at(0).at("hit_hash"), whole.at("rows").at(0).at("hit_hash"));
 }
 
+TEST_F(Resume, a_row_that_goes_on_has_every_key_of_the_whole_run)
+{
+    const std::string command = "table3 --method maria --layout tet80 --size 16 --views 0-1281:200 --samples 3 ";
+    ASSERT_EQ(run(command + "--out whole.json").code, 0);
+    EXPECT_LT(kill_in_the_middle(command + "--out r.json", "r.json.journal"), 7u);
+    ASSERT_EQ(run(command + "--out r.json --resume").code, 0);
+    const auto keys_of_row = [](const json& result) {
+        std::vector<std::string> keys;
+        const json flat = result.at("rows").at(0).flatten();
+        for (const auto& [path, value] : flat.items())
+            if (path.find("_samples_s/") == std::string::npos) keys.push_back(path);
+        return keys;
+    };
+    EXPECT_EQ(keys_of_row(result("r.json")), keys_of_row(result("whole.json")));
+}
+
 TEST_F(Resume, a_damaged_yardstick_in_the_journal_is_refused)
 {
     const std::string arguments = "table5 --searches 20x8 --method maria --layout tet80 --samples 3 --out r.json";
