@@ -366,6 +366,12 @@ std::vector<RowField> time_fields()
          recorded("durations", optional, "launch to the end of waiting, on the host's clock")},
         {"times", "median_s", in(&Figures::kernel_s, &Statistics::median), recorded("positive"), csv("median", "s", 6),
          times("kernel", "ms", 1, milliseconds), report("kernel", "", 1, milliseconds)},
+        {"times", "fastest_s",
+         [](const RowRecord& row) {
+             return row.samples_s.empty() ? std::nullopt : std::optional(*std::ranges::min_element(row.samples_s));
+         },
+         recorded("positive", optional, "the fastest sample"), csv("fastest", "s", 6),
+         report("fastest", "", 1, milliseconds)},
         {"times", "lower_quartile_s", in(&Figures::kernel_s, &Statistics::lower_quartile), recorded("positive")},
         {"times", "upper_quartile_s", in(&Figures::kernel_s, &Statistics::upper_quartile), recorded("positive")},
         {"times", "spread", in(&Figures::kernel_s, &Statistics::spread),
