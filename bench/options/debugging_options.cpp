@@ -31,7 +31,7 @@ std::vector<OptionRow> inspect_options()
          "Compile for this GPU, which need not be here: AMD's as RADV names them (gfx1100, navi21, gfx906, ...), "
          "NVIDIA's as nvcc does (sm_75, sm_90, ...). Default: gfx1100, navi21, gfx906, sm_75, sm_90.",
          bit(Verb::inspect), true, append_text(&Options::gpus)},
-        {"Compilers", "--entry", "NAME",
+        {experiments, "--entry", "NAME",
          "Keep the entry points of this kind: 'outside' and 'inside', primary rays that start outside the domain or "
          "in a tet; 'rays', given rays; 'search', exit searches of table5. Default: all.",
          bit(Verb::inspect), true, append("--entry", &Options::entries)},

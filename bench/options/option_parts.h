@@ -4,6 +4,9 @@
 
 namespace tetrace {
 
+/// Options for those who study one layout, schedule or device; the last heading of each help.
+inline constexpr const char* experiments = "Experiments";
+
 // The parts of option_table() that have files of their own, and the verbs that their rows name.
 
 /// OptionRow::verbs of one verb.

@@ -83,7 +83,7 @@ std::vector<OptionRow> scene_options()
              std::to_string(usual_effort) + ".",
          building, false,
          [](Options& o, const std::string& v) { o.effort = static_cast<int>(parse_count("--effort", v, 0, 3)); }},
-        {"Scenes", "--divisions", "N",
+        {experiments, "--divisions", "N",
          "Cut each side of the domain into N x N squares, 1 to 64. 'build' accepts a list. Default: " +
              std::to_string(BuildOptions{}.divisions) + ".",
          building, true, append_count("--divisions", &Options::divisions, 1, 64)},
@@ -92,7 +92,7 @@ std::vector<OptionRow> scene_options()
              default_build(TetsKind::rays).switches + " for --tets rays, " + default_build(TetsKind::cdt).switches +
              " for --tets cdt.",
          building, true, append_text(&Options::switches)},
-        {"Scenes", "--resolution", "N",
+        {experiments, "--resolution", "N",
          "Cubes along each axis of the scene 'cubes', 2 to 128. Default: " + std::to_string(BuildOptions{}.resolution) +
              ".",
          building, false, set_count("--resolution", &Options::resolution, 2, 128)},
@@ -160,7 +160,7 @@ std::vector<OptionRow> row_options()
          "'exact': no contraction to FMAs, the same bits everywhere; 'fast': the compiler may contract. Embree has "
          "one build, whose rows appear in both modes. Default: exact.",
          selecting | bit(Verb::dump), true, append("--math", &Options::math)},
-        {"Rows", "--order", "ORDER",
+        {experiments, "--order", "ORDER",
          "Order of the tets in memory: 'hilbert', along a space-filling curve; 'reached', the same, but tets that "
          "no ray from outside reaches are last; 'chains', as 'reached', but each tet is followed by its neighbour "
          "across its largest free face; 'input', as TetGen wrote them. Only for rows of structure cdt. Default: "
@@ -205,13 +205,13 @@ std::vector<OptionRow> ray_options()
          "Host threads; 0 means OMP_NUM_THREADS if it is set, or else all CPUs that the process may use. Scenes are "
          "always built with 0. Default: 0.",
          with_rays, false, set_count("--threads", &Options::threads, 0, 4096)},
-        {"Rays", "--tile", "WxH", "Pixels per work-group: 8x4 or 8x8. Default: depends on the type of the device.",
+        {experiments, "--tile", "WxH", "Pixels per work-group: 8x4 or 8x8. Default: depends on the type of the device.",
          reproducing, false, [](Options& o, const std::string& v) { o.tile_height = parse_tile_height(v); }},
-        {"Rays", "--packet-lanes", "N",
+        {experiments, "--packet-lanes", "N",
          "Rays per packet, for rows of schedule 'packets': 4, 8 or 16. If the CPU or the build does not support "
          "that width, those rows are unsupported. Default: the widest available.",
          tracing, false, [](Options& o, const std::string& v) { o.packet_lanes = parse_packet_lanes(v); }},
-        {"Rays", "--buffer-limit", "SIZE",
+        {experiments, "--buffer-limit", "SIZE",
          "Maximum size of a buffer on every device: bytes, or a number followed by K, M, G or T. The array of tets "
          "is bound in parts that fit; if that is not enough, the row is unsupported. Default: the limit that each "
          "device reports.",
@@ -333,6 +333,7 @@ std::vector<OptionRow> make_table()
                       driver_options, judging_options, report_options, sharing_options, output_options, dump_options})
         for (OptionRow& row : part())
             table.push_back(std::move(row));
+    std::ranges::stable_partition(table, [](const OptionRow& row) { return row.group != experiments; });
     return table;
 }
 
