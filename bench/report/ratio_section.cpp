@@ -92,7 +92,8 @@ Html tets_over_bvhs(const ReportInput& input)
     for (const ReportRow& row : input.rows) {
         const auto rates = values.at(row.file).at(row.index).find("rates");
         if (!rates || !rates->find("best_bvh") || !row.kernel.starts_with("cdt ")) continue;
-        const ReportRow& bvh = row_named(input, row.file, rates->at("best_bvh"));
+        const ResultValue best = rates->at("best_bvh");
+        const ReportRow& bvh = row_named(input, row.file, best);
         table.add({text(file_letter(row.file, files)), text(row.row->scene),
                    text(row.kernel_and_rays() + " " + row.api), text(row.device), text(interval_text(*rates)),
                    text(bvh.kernel + " " + bvh.api)});

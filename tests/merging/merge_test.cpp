@@ -177,7 +177,7 @@ TEST_F(Merge, shards_of_other_runs_are_refused_by_name)
     EXPECT_TRUE(contains(refused([](Json& section) { section["shard"]["arguments"].push_back("--size"); }),
                          "another command line"));
     EXPECT_TRUE(contains(refused([](Json& section) { section["rows"].erase(0); }), "other rows: "));
-    EXPECT_TRUE(contains(refused([](Json& section) { section.erase("shard"); }), "'2.json' is no shard's result"));
+    EXPECT_TRUE(contains(refused([](Json& section) { section.erase("shard"); }), "'2.json' is not a shard's result"));
     EXPECT_TRUE(contains(refused([](Json& section) { section["commit"] = "0000000"; }), "another commit: "));
 }
 

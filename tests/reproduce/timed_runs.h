@@ -17,7 +17,7 @@ inline SceneRun open_run(const std::string& backends = "openmp,embree", const st
 {
     const Options options =
         parse_options({"reproduce", "table6", "--scene", "cubes", "--resolution", "3", "--size", "8", "--views",
-                       view_list, "--backend", backends, "--samples", "3", "--threads", "1"});
+                       view_list, "--backend", backends, "--samples", "3", "--sample-time", "0", "--threads", "1"});
     SceneBuild build{scene_requests(options).front(), "cubes", our_build, "cubes", false, true, false, true};
     SceneRun run = open_scene_run(build, options);
     RunProgress progress;
