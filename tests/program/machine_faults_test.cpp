@@ -106,7 +106,7 @@ TEST_F(MachineFaults, signal_that_ends_a_run_costs_only_what_was_not_finished)
         ::kill(child, signal);
         const Ended ended = end(child);
         EXPECT_EQ(ended.code, 130) << ended.errors;
-        EXPECT_TRUE(contains(read_text(folder_ / "r.json"), "\"interrupted\": true"));
+        EXPECT_TRUE(contains(read_text(folder_ / "r.json"), "\"interrupted\":true"));
         EXPECT_EQ(run(arguments + "r.json --resume").code, 0);
         EXPECT_EQ(answers("r.json"), answers("whole.json"));
         std::filesystem::remove(folder_ / "r.json");
