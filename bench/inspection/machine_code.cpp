@@ -11,7 +11,7 @@ namespace tetrace {
 namespace {
 
 /// A line of code: a label, or an instruction with the label that it may go to.
-struct Line {
+struct CodeLine {
     std::string label;
     std::string text;
     std::string goes_to;
@@ -47,7 +47,7 @@ bool has(std::string_view text, std::string_view part)
 }
 
 /// Lines that some backward branch leads back to.
-std::vector<bool> lines_in_loops(const std::vector<Line>& lines)
+std::vector<bool> lines_in_loops(const std::vector<CodeLine>& lines)
 {
     std::map<std::string, std::size_t> labels;
     std::vector<bool> looped(lines.size(), false);
@@ -60,7 +60,7 @@ std::vector<bool> lines_in_loops(const std::vector<Line>& lines)
     return looped;
 }
 
-CodeFigures figures_of(const std::vector<Line>& lines, const Language& language)
+CodeFigures figures_of(const std::vector<CodeLine>& lines, const Language& language)
 {
     const std::vector<bool> looped = lines_in_loops(lines);
     CodeFigures figures;
@@ -118,12 +118,12 @@ std::string without_predicate(const std::string& text)
     return text.starts_with("@") ? trimmed(text.substr(std::min(text.size(), text.find(' ')))) : text;
 }
 
-Line ptx_line(const std::string& text)
+CodeLine ptx_line(const std::string& text)
 {
     if (text.starts_with("$") && text.ends_with(":")) return {text.substr(0, text.size() - 1), {}, {}};
     if (!text.ends_with(";") || text.starts_with(".")) return {};
     const std::string instruction = without_predicate(text);
-    Line line{{}, instruction, {}};
+    CodeLine line{{}, instruction, {}};
     if (instruction.starts_with("bra")) {
         line.goes_to = words_of(instruction).back();
         line.goes_to.pop_back();
@@ -180,14 +180,14 @@ bool is_sass_fused(const std::string& text)
 }
 
 /// "        /*0010*/              @!P0 BRA `(.L_x_2) ;"
-Line sass_line(const std::string& text)
+CodeLine sass_line(const std::string& text)
 {
     if (text.starts_with(".L_") && text.ends_with(":")) return {text.substr(0, text.size() - 1), {}, {}};
     const std::size_t address_end = text.find("*/");
     if (!text.starts_with("/*") || address_end == std::string::npos || !has(text, ";")) return {};
     const std::string instruction =
         without_predicate(trimmed(text.substr(address_end + 2, text.find(';') - address_end - 2)));
-    Line line{{}, instruction, {}};
+    CodeLine line{{}, instruction, {}};
     const std::size_t target = instruction.find("`(");
     if (instruction.starts_with("BRA") && target != std::string::npos)
         line.goes_to = instruction.substr(target + 2, instruction.find(')') - target - 2);
@@ -199,7 +199,7 @@ Line sass_line(const std::string& text)
 CodeFigures read_amd(std::string_view text)
 {
     std::istringstream stream{std::string(text)};
-    std::vector<Line> lines;
+    std::vector<CodeLine> lines;
     for (std::string raw; std::getline(stream, raw);) {
         const std::string line = trimmed(std::string_view(raw).substr(0, raw.find(';')));
         if (line.empty()) continue;
@@ -216,7 +216,7 @@ CodeFigures read_amd(std::string_view text)
 
 CodeFigures read_ptx(std::string_view text, const std::string& entry)
 {
-    std::vector<Line> lines;
+    std::vector<CodeLine> lines;
     std::uint64_t divisions = 0, unrounded = 0;
     for (const std::string& line : ptx_lines(text, entry)) {
         lines.push_back(ptx_line(line));
@@ -234,7 +234,7 @@ CodeFigures read_ptx(std::string_view text, const std::string& entry)
 CodeFigures read_sass(std::string_view text, const std::string& entry)
 {
     std::istringstream stream{std::string(text)};
-    std::vector<Line> lines;
+    std::vector<CodeLine> lines;
     bool inside = false;
     for (std::string raw; std::getline(stream, raw);) {
         const std::string line = trimmed(raw);

@@ -1,6 +1,6 @@
 #include "bench/measuring/budget.h"
 
-#include "bench/measuring/sampling/sampler.h"
+#include "bench/measuring/sampler.h"
 #include "bench/measuring/verify.h"
 #include "bench/terminal/progress.h"
 #include "bench/terminal/text.h"
@@ -163,6 +163,16 @@ void Budget::traced(const RowRun& row, std::size_t views, double seconds)
         entry.seen_views += static_cast<double>(views);
         entry.seen_s += seconds;
         entry.view_s = entry.seen_s / entry.seen_views;
+    }
+}
+
+void Budget::restored(const RowRun& row, std::size_t views)
+{
+    for (Entry& entry : entries_) {
+        if (entry.row != &row) continue;
+        entry.views_left = std::max(0.0, entry.views_left - static_cast<double>(views));
+        double& to_judge = views_to_judge_[row.scene];
+        to_judge = std::min(to_judge, std::max(0.0, static_cast<double>(row.scene->views().size() - views)));
     }
 }
 

@@ -46,6 +46,8 @@ public:
     /// Records that a view of plan_views() has been timed, and skips rows until the others fit.
     void view_done();
 
+    /// Records that so many views of a row, and their judging, need not be done: a journal has them.
+    void restored(const RowRun& row, std::size_t views);
     /// Records that some views of a row took this many seconds.
     void traced(const RowRun& row, std::size_t views, double seconds);
     /// Records that all rows of a view of the scene were judged; seconds: without the tracing.

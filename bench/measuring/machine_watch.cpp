@@ -26,6 +26,19 @@ double end_of(const Pulse& pulse)
 
 } // namespace
 
+GpuMonitor* Monitors::of(const RowRun& row)
+{
+    const auto [place, is_new] = found_.try_emplace({row.key.backend, row.key.device});
+    if (is_new) place->second = find_(row.device);
+    return place->second.get();
+}
+
+void Monitors::find(const std::vector<RowRun*>& rows)
+{
+    for (const RowRun* row : rows)
+        if (is_timed(*row)) (void)of(*row);
+}
+
 MachineWatch::MachineWatch(Pulses::Work host, const std::vector<nlohmann::json>& before, Clock clock,
                            double sampled_until_s, FindMonitor find_monitor)
     : before_s_(sampled_until_s), clock_([this, clock = std::move(clock)] { return before_s_ + clock(); }),
@@ -71,9 +84,14 @@ nlohmann::json MachineWatch::new_readings(bool with_load)
     found["load"] = {
         {"others", load->others}, {"average", load->average}, {"processors", load->processors}, {"seconds", seconds}};
     stretches_.push_back({*load, seconds});
+    begin_load();
+    return found;
+}
+
+void MachineWatch::begin_load()
+{
     meter_ = LoadMeter();
     metered_from_s_ = now();
-    return found;
 }
 
 std::optional<MachineLoad> MachineWatch::load() const

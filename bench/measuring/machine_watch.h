@@ -1,14 +1,32 @@
 #pragma once
 
+#include "bench/measuring/gpu_monitor.h"
 #include "bench/measuring/pulse.h"
-#include "bench/measuring/sampling/sampler.h"
 
+#include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
 
 namespace tetrace {
 
-/// How steady the machine was through a run of `reproduce`, over all its scenes, its searches, and the processes that a
-/// resumed run took: its pulse, and the work of others, which the journal keeps; and who asks its GPUs.
+/// The monitors of the rows' GPUs, each found once.
+class Monitors {
+public:
+    explicit Monitors(FindMonitor find) : find_(std::move(find)) {}
+    /// Null if nothing reports about the row's device. The first call for a device may take a second.
+    [[nodiscard]] GpuMonitor* of(const RowRun& row);
+    /// Finds those of the timed rows now, not between samples.
+    void find(const std::vector<RowRun*>& rows);
+
+private:
+    FindMonitor find_;
+    std::map<std::pair<std::string, std::size_t>, std::unique_ptr<GpuMonitor>> found_;
+};
+
+/// How steady the machine was through a run, over all its scenes, its searches, and the processes that a resumed run
+/// took: its pulse, and the work of others, which the journal keeps; and who asks its GPUs.
 class MachineWatch {
 public:
     /// host: the work of its pulse. before: what new_readings() of the run's earlier processes gave, in their order.
@@ -25,6 +43,10 @@ public:
     [[nodiscard]] Monitors& monitors() { return monitors_; }
     /// Seconds since the run's first process began, without the time between its processes.
     [[nodiscard]] double now() const { return clock_(); }
+    [[nodiscard]] const Clock& clock() const { return clock_; }
+
+    /// Leaves out the load until now, as that of work that is not timed.
+    void begin_load();
 
     /// What was read since the last call, for the journal's entry; null if nothing was. with_load: also the load of
     /// a stretch so short that it would rather be read later.

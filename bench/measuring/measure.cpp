@@ -1,7 +1,7 @@
 #include "bench/measuring/measure.h"
 
 #include "bench/measuring/reporters.h"
-#include "bench/measuring/sampling/sampler.h"
+#include "bench/rows/json_numbers.h"
 #include "bench/rows/physical_device.h"
 #include "bench/rows/row_tracing.h"
 #include "bench/terminal/colour.h"
@@ -18,7 +18,9 @@
 #include <map>
 #include <numeric>
 #include <sstream>
+#include <stdexcept>
 #include <unistd.h>
+#include <utility>
 
 namespace tetrace {
 
@@ -31,51 +33,17 @@ void set_counters(benchmark::State& state, const RowRun& row)
     state.counters["Mrays/s"] = 1e-6 * static_cast<double>(traced(row)->totals.rays) / row.samples_s.back();
 }
 
-/// Counts the repetitions of all rows, for the progress line.
-struct Sweep {
-    const Budget* budget; ///< whose clock is read
-    Pulses* pulses;
-    const Sampler* sampler;
-    unsigned samples; ///< per row and run
-    unsigned run = 0;
-    double done = 0, all = 1;
-};
-
-/// Seconds of a pass over all views.
-struct Pass {
-    double kernel_s = 0, wall_s = 0, download_s = 0;
-};
-
-/// What else happens in a pass.
-struct Besides {
-    std::function<void(double)> tell_progress;
-    std::function<void(const ViewBatch&, std::span<const Hit>)> see = {}; ///< given each launch's hits
-    std::function<void()> in_last_launch = {};                            ///< called during the last launch
-};
-
-/// batches: a launch for each. passes: of each batch; the seconds are those of all of them.
-Pass trace_batches(RowRun& row, const std::vector<ViewBatch>& batches, std::uint32_t passes, const Budget& budget,
-                   const Besides& besides)
+/// The launches of a row that trace these batches of views. Their answers are given to `see`, which may be empty.
+Pass pass_of(RowRun& row, const std::vector<ViewBatch>& batches,
+             std::function<void(const ViewBatch&, std::span<const Hit>)> see = {})
 {
-    Pass pass;
-    std::vector<Hit> hits;
-    for (std::size_t i = 0; i < batches.size(); ++i) {
-        // Not inside a timed interval: a sample may take minutes, and drawing adds nothing to a row's time.
-        besides.tell_progress(static_cast<double>(i) / static_cast<double>(batches.size()));
-        std::vector<TraceJob> jobs = prepare_batch(row, batches[i]);
-        for (TraceJob& job : jobs)
-            job.passes = passes;
-        const bool is_last = i + 1 == batches.size();
-        const auto [kernel_s, wall_s] = timed_launch(*row.session, jobs, budget.clock(),
-                                                     is_last ? besides.in_last_launch : std::function<void()>());
-        pass.kernel_s += kernel_s;
-        pass.wall_s += wall_s;
-        if (!besides.see) continue;
-        hits.assign(ray_count(row, batches[i]), Hit{POISON, POISON, 0, 0, 0, 0});
-        row.session->read_back(hits);
-        pass.download_s += row.session->download_s();
-        besides.see(batches[i], hits);
-    }
+    Pass pass{&row, batches.size(), [&](std::size_t launch) { return prepare_batch(row, batches[launch]); }};
+    if (see)
+        pass.after = [&row, &batches, see = std::move(see)](std::size_t launch) {
+            std::vector<Hit> hits(ray_count(row, batches[launch]), Hit{POISON, POISON, 0, 0, 0, 0});
+            row.session->read_back(hits);
+            see(batches[launch], hits);
+        };
     return pass;
 }
 
@@ -117,13 +85,17 @@ void join_views_of(std::vector<RowRun>& rows)
 void warm_up(RowRun& row, const Sampler& sampler, Budget& budget, const std::function<void(double)>& tell_progress)
 {
     guarded(row, [&] {
-        const auto ignore = [](const ViewBatch&, std::span<const Hit>) {};
-        Pass pass = trace_batches(row, single_views(row), 1, budget, {tell_progress, ignore});
-        std::get<Traced>(row.outcome).download_s = pass.download_s;
-        budget.traced(row, row.scene->views().size(), pass.wall_s);
-        if (!runs_on_host(row.device)) pass = trace_batches(row, row.batches, 1, budget, {tell_progress});
-        sampler.warmed_up(row, pass.kernel_s);
-        row.warm_s = pass.wall_s + (row.passes > 1 ? row.passes * pass.kernel_s : 0);
+        const std::vector<ViewBatch> views = single_views(row);
+        double download_s = 0;
+        Pass pass =
+            pass_of(row, views, [&](const ViewBatch&, std::span<const Hit>) { download_s += row.session->download_s(); });
+        pass.tell_progress = tell_progress;
+        LaunchTimes times = run_pass(pass, 1, budget.clock());
+        std::get<Traced>(row.outcome).download_s = download_s;
+        budget.traced(row, row.scene->views().size(), times.wall_s);
+        if (!runs_on_host(row.device)) times = run_pass(pass_of(row, row.batches), 1, budget.clock());
+        sampler.warmed_up(row, times.kernel_s);
+        row.warm_s = times.wall_s + (row.passes > 1 ? row.passes * times.kernel_s : 0);
     });
 }
 
@@ -157,30 +129,87 @@ TimedPart warm_up_rows(std::vector<RowRun>& rows, unsigned samples, const Sample
     return part;
 }
 
-/// Seconds of a pass.
-double take_sample(RowRun& row, const Sweep& sweep)
+/// Where samples are kept until the next line of the journal, which has those of some seconds: its writing waits for
+/// the disk.
+class SampleLog {
+public:
+    SampleLog(Journal* journal, MachineWatch& watch, unsigned samples)
+        : journal_(journal), watch_(&watch), samples_(samples)
+    {
+    }
+
+    void begin_run(unsigned run) { run_ = run; }
+    void add(const RowRun& row, const RowSamples& sample)
+    {
+        if (journal_ == nullptr) return;
+        append_samples(rows_[row_name(row.key)], sample);
+        if (watch_->now() - written_s_ >= every_s) write(false);
+    }
+    /// is_last: of the run: the load is read, however short it was.
+    void write(bool is_last)
+    {
+        nlohmann::json readings = watch_->new_readings(is_last);
+        if (journal_ == nullptr) return;
+        nlohmann::json entry = {{samples_key, {{"run", run_}, {"of", samples_}}}, {"rows", nlohmann::json::object()}};
+        for (const auto& [name, samples] : rows_)
+            entry["rows"][name] = samples_json(samples);
+        if (!readings.is_null()) entry[MachineWatch::entry_key] = std::move(readings);
+        journal_->append(entry);
+        rows_.clear();
+        written_s_ = watch_->now();
+    }
+
+    static constexpr const char* samples_key = "samples";
+
+private:
+    static constexpr double every_s = 2;
+
+    Journal* journal_;
+    MachineWatch* watch_;
+    unsigned samples_, run_ = 0;
+    std::map<std::string, RowSamples> rows_;
+    double written_s_ = 0;
+};
+
+/// Counts the samples of all rows, for the progress line, and what is needed to take one.
+struct Sweep {
+    const Budget* budget; ///< whose clock is read
+    const Sampler* sampler;
+    SampleLog* log;
+    unsigned samples; ///< per row and run
+    double done = 0, all = 1;
+};
+
+/// Of the current run.
+std::size_t samples_in_run(const RowRun& row)
 {
-    sweep.pulses->take_if_due();
+    return row.samples_s.size() - std::accumulate(row.run_samples.begin(), row.run_samples.end(), std::size_t{0});
+}
+
+void take_sample(RowRun& row, const Sweep& sweep)
+{
     const auto tell = [&](double done) {
         progress_line().show("measuring", (sweep.done + done) / sweep.all, -1,
                              row.key.scene + ", " + row_label(row.key));
     };
-    Besides besides{tell};
-    const std::size_t taken = row.samples_s.size() - sweep.run * sweep.samples;
-    if (taken + 1 == sweep.samples) // the last one
-        besides.see = [&](const ViewBatch& views, std::span<const Hit> hits) { check_hits(row, views, hits); };
-    const auto trace = [&](std::uint32_t passes, const std::function<void()>& meanwhile) {
-        besides.in_last_launch = meanwhile;
-        const Pass pass = trace_batches(row, row.batches, passes, *sweep.budget, besides);
-        return LaunchTimes{pass.kernel_s, pass.wall_s};
-    };
-    const Sample sample = sweep.sampler->take(row, trace);
-    sweep.pulses->sampled(row, sample.begin_s, sample.end_s);
-    row.wall_samples_s.push_back(sample.pass.wall_s);
+    const std::size_t taken = samples_in_run(row);
+    Pass pass = taken + 1 < sweep.samples
+                    ? pass_of(row, row.batches)
+                    : pass_of(row, row.batches, [&](const ViewBatch& views, std::span<const Hit> hits) {
+                          check_hits(row, views, hits);
+                      });
+    pass.tell_progress = tell;
+    RowSamples sample;
+    sweep.sampler->take(pass, sample);
     const bool has_latency = row.launches.joined == row.launches.single; // its samples have a launch for each view
-    if (!has_latency && taken < latency_passes(sweep.samples, row.passes))
-        row.latency_samples_s.push_back(trace_batches(row, single_views(row), 1, *sweep.budget, {tell}).kernel_s);
-    return sample.pass.kernel_s;
+    if (!has_latency && taken < latency_passes(sweep.samples, row.passes)) {
+        const std::vector<ViewBatch> views = single_views(row);
+        Pass alone = pass_of(row, views);
+        alone.tell_progress = tell;
+        sample.latency_samples_s.push_back(run_pass(alone, 1, sweep.budget->clock()).kernel_s);
+    }
+    add_samples(row, sample);
+    sweep.log->add(row, sample);
 }
 
 void run_row(benchmark::State& state, RowRun& row, Sweep& sweep)
@@ -190,30 +219,34 @@ void run_row(benchmark::State& state, RowRun& row, Sweep& sweep)
             state.SkipWithError("interrupted");
             return;
         }
-        double seconds = 0;
-        if (traced(row) != nullptr) guarded(row, [&] { seconds = take_sample(row, sweep); });
+        if (traced(row) != nullptr) guarded(row, [&] { take_sample(row, sweep); });
         if (traced(row) == nullptr) {
             state.SkipWithError(reason_of(row).c_str());
             return;
         }
-        state.SetIterationTime(seconds);
-        // Recorded here: reporters see only aggregates if Google Benchmark is asked for them.
-        row.samples_s.push_back(seconds);
+        state.SetIterationTime(row.samples_s.back());
         sweep.done += 1;
     }
     set_counters(state, row);
 }
 
-void register_rows(const std::vector<RowRun*>& rows, unsigned samples, Sweep& sweep)
+/// Those that lack samples of the current run; whether there are any.
+bool register_rows(const std::vector<RowRun*>& rows, Sweep& sweep)
 {
     benchmark::ClearRegisteredBenchmarks();
-    for (RowRun* const row : rows)
+    bool is_any = false;
+    for (RowRun* const row : rows) {
+        const std::size_t taken = samples_in_run(*row);
+        if (taken >= sweep.samples) continue;
+        is_any = true;
         benchmark::RegisterBenchmark(row_name(row->key).c_str(),
                                      [row, &sweep](benchmark::State& state) { run_row(state, *row, sweep); })
             ->Iterations(1)
-            ->Repetitions(static_cast<int>(samples))
+            ->Repetitions(static_cast<int>(sweep.samples - taken))
             ->UseManualTime()
             ->Unit(benchmark::kMillisecond);
+    }
+    return is_any;
 }
 
 /// As Google Benchmark chooses them, but that NO_COLOR is honoured.
@@ -283,11 +316,50 @@ void reopen_rows(std::vector<RowRun>& rows, const Options& options)
     }
 }
 
-/// Of the run that has just been measured.
-void count_samples(RowRun& row)
+/// At the end of a run.
+void count_samples(std::vector<RowRun>& rows)
 {
-    row.run_samples.push_back(row.samples_s.size() -
-                              std::accumulate(row.run_samples.begin(), row.run_samples.end(), std::size_t{0}));
+    for (RowRun& row : rows)
+        if (is_timed(row)) row.run_samples.push_back(samples_in_run(row));
+}
+
+/// What the journal of an earlier process of the run has.
+struct EarlierSamples {
+    unsigned run = 0;     ///< that it was in
+    unsigned samples = 0; ///< of each row in each run; 0: it took none
+};
+
+void restore_row(RowRun& row, const RowSamples& samples, unsigned most, Pulses& pulses)
+{
+    require_samples(samples, samples.samples_s.size(), true);
+    add_samples(row, samples);
+    for (const auto& [begin_s, end_s] : samples.sampled_s)
+        pulses.sampled(row, begin_s, end_s);
+    if (samples_in_run(row) > most)
+        throw std::domain_error(fmt::format("{} has more than {} samples of a run", row_name(row.key), most));
+}
+
+EarlierSamples restore_samples(std::vector<RowRun>& rows, const Journal& journal, Pulses& pulses)
+{
+    EarlierSamples earlier;
+    try {
+        for (const nlohmann::json& entry : journal.entries()) {
+            if (!entry.contains(SampleLog::samples_key)) continue;
+            const nlohmann::json& which = entry[SampleLog::samples_key];
+            earlier.samples = count_from<unsigned>(which.at("of"));
+            for (const auto run = count_from<unsigned>(which.at("run")); earlier.run < run; ++earlier.run)
+                count_samples(rows);
+            for (RowRun& row : rows)
+                if (const auto found = entry.at("rows").find(row_name(row.key));
+                    is_timed(row) && found != entry["rows"].end())
+                    restore_row(row, samples_from(*found), earlier.samples, pulses);
+        }
+    } catch (const nlohmann::json::exception& error) {
+        journal.reject(fmt::format("samples in the journal are damaged: {}", error.what()));
+    } catch (const std::logic_error& error) {
+        journal.reject(fmt::format("samples in the journal are damaged: {}", error.what()));
+    }
+    return earlier;
 }
 
 void check_rows_after(std::vector<RowRun>& rows)
@@ -312,53 +384,65 @@ unsigned affordable_samples(unsigned asked, double sweep_s, double left_s)
 Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, const BenchmarkFlags& flags, Budget& budget,
                          const Pulses::Work& host, const FindMonitor& find_monitor)
 {
+    MachineWatch watch(host ? host : host_pulse(resolved_threads(options)), {}, budget.clock(), 0, find_monitor);
+    return measure_rows(rows, options, flags, {nullptr, nullptr, &watch, &budget});
+}
+
+Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, const BenchmarkFlags& flags,
+                         const Recording& shared)
+{
+    Budget& budget = *shared.budget;
+    MachineWatch& watch = *shared.watch;
     Measurement result;
-    const LoadMeter meter;
-    Monitors monitors(find_monitor);
-    const Sampler sampler(options.sample_s, budget, &monitors);
+    watch.begin_load();
+    const Sampler sampler(options.sample_s, budget, &watch);
     join_views_of(rows);
     result.runs = options.runs;
     const TimedPart part = warm_up_rows(rows, options.samples, sampler, budget);
     if (is_interrupted()) return result;
+    watch.pulses().watch(pointers_to(rows), last_view_pulse(budget.clock()));
+    EarlierSamples earlier;
+    if (shared.journal != nullptr) earlier = restore_samples(rows, *shared.journal, watch.pulses());
     const double for_samples_s = budget.left_s() - result.runs * part.latency_s - (result.runs - 1) * part.sweep_s;
-    result.samples =
-        flags.repetitions.value_or(affordable_samples(options.samples, result.runs * part.sweep_s, for_samples_s));
+    result.samples = earlier.samples > 0 ? earlier.samples
+                                         : flags.repetitions.value_or(affordable_samples(
+                                               options.samples, result.runs * part.sweep_s, for_samples_s));
     result.lowered = !flags.repetitions && result.samples < options.samples;
     const auto timed = std::ranges::count_if(rows, is_timed);
     if (timed == 0) return result;
-    const auto groups = sample_groups(rows);
-    const Stopwatch watch;
-    Pulses pulses(rows, host ? host : host_pulse(resolved_threads(options)), budget.clock());
-    Sweep sweep{&budget, &pulses, &sampler, result.samples};
+    const auto groups = sample_groups(pointers_to(rows));
+    const Stopwatch stopwatch;
+    SampleLog log(shared.journal, watch, result.samples);
+    Sweep sweep{&budget, &sampler, &log, result.samples};
     sweep.all = static_cast<double>(timed) * result.samples * result.runs;
     for (const RowRun& row : rows)
-        if (is_timed(row)) (void)monitors.of(row); // starting one takes a second: not while a GPU waits for its sample
+        sweep.done += static_cast<double>(row.samples_s.size());
+    watch.monitors().find(pointers_to(rows));
     const std::size_t reports = groups.size() * result.runs;
     const auto display = make_display(flags, reports);
     const auto file = flags.out.empty() ? nullptr : std::make_unique<FileReporter>(flags.out_format, reports);
-    pulses.take();
-    for (; sweep.run < result.runs && !is_interrupted(); ++sweep.run) {
-        if (sweep.run > 0) {
+    watch.pulses().take();
+    for (unsigned run = earlier.run; run < result.runs && !is_interrupted(); ++run) {
+        if (run > earlier.run) {
             reopen_rows(rows, options);
             static_cast<void>(warm_up_rows(rows, options.samples, sampler, budget));
         }
-        for (const auto& group : groups) {
-            register_rows(group, result.samples, sweep);
+        log.begin_run(run);
+        for (const auto& group : groups)
             // The filter was applied to the rows themselves, under the reported names.
-            benchmark::RunSpecifiedBenchmarks(display.get(), file.get(), "all");
-        }
-        for (RowRun& row : rows)
-            if (is_timed(row)) count_samples(row);
+            if (register_rows(group, sweep)) benchmark::RunSpecifiedBenchmarks(display.get(), file.get(), "all");
+        count_samples(rows);
     }
-    pulses.take();
-    result.load = meter.load();
-    result.pulses = pulses.found();
-    pulses.judge_rows(rows, result.load);
+    watch.pulses().take();
+    log.write(true);
+    result.load = watch.load();
+    result.pulses = watch.pulses().found();
+    watch.pulses().judge_rows(rows, result.load);
     progress_line().clear();
     require_printed(flags);
     if (file != nullptr) write_whole(flags.out, file->text());
     check_rows_after(rows);
-    result.wall_s = watch.seconds();
+    result.wall_s = stopwatch.seconds();
     return result;
 }
 

@@ -1,11 +1,7 @@
 #pragma once
 
-#include "bench/measuring/budget.h"
-#include "bench/measuring/gpu/gpu_monitor.h"
-#include "bench/measuring/machine_load.h"
-#include "bench/measuring/pulse.h"
+#include "bench/measuring/row_recorder.h"
 #include "bench/options/benchmark_flags.h"
-#include "bench/rows/row_run.h"
 
 #include <optional>
 #include <vector>
@@ -34,9 +30,13 @@ struct Measurement {
 /// end with their reason, and so do rows for which the budget has no time. GPUs are asked for their clocks, power and
 /// throttling during each sample (see Sampler). Meanwhile the pulse is taken, and rows learn what it says of their
 /// rates. Writes the file of --benchmark_out. With options.runs above 1 all of it is done that often, each time with
-/// new sessions. After an interrupt, rows keep the samples that they have. host: its pulse; openmp::pulse_s() where it
-/// is empty. find_monitor: of a row's GPU. Throws Error{invalid_input} if that file, or what Google Benchmark
-/// prints, cannot be written.
+/// new sessions. After an interrupt, rows keep the samples that they have. shared: a watch; and a journal, which gets
+/// the samples now and then, or has some already, which are not taken again. Throws Error{invalid_input} if that file,
+/// or what Google Benchmark prints, cannot be written, Error{usage} if the journal is damaged.
+[[nodiscard]] Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, const BenchmarkFlags& flags,
+                                       const Recording& shared);
+/// The same without a journal. host: the work of its pulse; openmp::pulse_s() where it is empty. find_monitor: of a
+/// row's GPU.
 [[nodiscard]] Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, const BenchmarkFlags& flags,
                                        Budget& budget = no_budget(), const Pulses::Work& host = {},
                                        const FindMonitor& find_monitor = find_gpu_monitor);

@@ -41,26 +41,23 @@ Pulses::Pulses(Work host, Clock clock) : clock_(std::move(clock))
     takers_.push_back({{"host", {}}, std::move(host)});
 }
 
-Pulses::Pulses(std::vector<RowRun>& rows, Work host, Clock clock) : Pulses(std::move(host), std::move(clock))
+Pulses::Pulses(const std::vector<RowRun*>& rows, Work host, Clock clock) : Pulses(std::move(host), std::move(clock))
 {
-    watch(rows, [this](RowRun& row) {
-        return median_launch_s(
-            row, [&] { return prepare_view(row, last_view_with_rays(row)); }, clock_);
-    });
+    watch(rows, last_view_pulse(clock_));
 }
 
-void Pulses::watch(std::vector<RowRun>& rows, const RowWork& gpu, const std::string& of)
+void Pulses::watch(const std::vector<RowRun*>& rows, const RowWork& gpu, const std::string& of)
 {
     for (std::size_t i = 1; i < takers_.size(); ++i)
         takers_[i].ended = true;
     last_s_.reset();
     std::vector<Device> devices;
-    for (const RowRun& row : rows)
-        devices.push_back(row.device);
+    for (const RowRun* row : rows)
+        devices.push_back(row->device);
     const auto hardware = physical_devices(devices);
     std::map<std::size_t, std::size_t> known;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        RowRun& row = rows[i];
+        RowRun& row = *rows[i];
         if (!is_timed(row)) continue;
         std::size_t taker = 0;
         if (!runs_on_host(row.device)) {
@@ -149,6 +146,14 @@ std::vector<Pulse> Pulses::found() const
 Pulses::Work host_pulse(unsigned threads)
 {
     return [threads] { return std::optional(openmp::pulse_s(threads)); };
+}
+
+Pulses::RowWork last_view_pulse(Clock clock)
+{
+    return [clock = std::move(clock)](RowRun& row) {
+        return median_launch_s(
+            row, [&] { return prepare_view(row, last_view_with_rays(row)); }, clock);
+    };
 }
 
 std::optional<double> median_launch_s(RowRun& row, const std::function<TraceJob()>& job, const Clock& clock)

@@ -42,7 +42,7 @@ public:
     /// host: its work.
     Pulses(Work host, Clock clock);
     /// rows: watched, each GPU by the last view of its first row.
-    Pulses(std::vector<RowRun>& rows, Work host, Clock clock);
+    Pulses(const std::vector<RowRun*>& rows, Work host, Clock clock);
     Pulses(const Pulses&) = delete;
     Pulses& operator=(const Pulses&) = delete;
 
@@ -50,7 +50,7 @@ public:
     /// end. The next reading is due.
     /// rows: opened; they keep their addresses. gpu: what the first row that is timed on each GPU does. of: a GPU's
     /// pulse is that of its name with this appended, continued where one is known.
-    void watch(std::vector<RowRun>& rows, const RowWork& gpu, const std::string& of = {});
+    void watch(const std::vector<RowRun*>& rows, const RowWork& gpu, const std::string& of = {});
     /// Readings of an earlier process of the same run, older than all of this one.
     void restore(const Pulse& pulse);
 
@@ -86,6 +86,9 @@ private:
 
 /// The calibration work of the host: openmp::pulse_s() by this many threads.
 [[nodiscard]] Pulses::Work host_pulse(unsigned threads);
+
+/// The calibration work of a GPU: the last view of the row that has rays, by median_launch_s().
+[[nodiscard]] Pulses::RowWork last_view_pulse(Clock clock);
 
 /// The median of three times that a row's session takes for a job, for its GPU's pulse. Empty if the row is not
 /// timed or fails, which is then its outcome.

@@ -43,13 +43,13 @@ void open_rows(SceneRows& result, const std::vector<RowKey>& keys, const SceneRe
 }
 
 void verify_scene(std::vector<RowRun>& rows, SceneWork& scene, const Options& options, const ImageSeen& image_seen,
-                  Budget& budget)
+                  const Recording& shared)
 {
     std::vector<RowRun*> pointers;
     for (RowRun& row : rows)
         if (row.scene == &scene) pointers.push_back(&row);
     try {
-        verify_rows(pointers, scene, options, image_seen, budget);
+        verify_rows(pointers, scene, options, image_seen, shared);
     } catch (const Error& error) {
         if (!ends_rows(error)) throw;
         say(fmt::format("{}: {}", scene.label(), error.what()));
@@ -89,7 +89,7 @@ std::vector<RowKey> selected_rows(const Options& options, const std::function<bo
 }
 
 SceneRows open_and_verify(const std::vector<RowKey>& keys, const Options& options, const ImageSeen& image_seen,
-                          Budget& budget)
+                          const Recording& shared)
 {
     SceneRows result;
     result.rows.reserve(keys.size()); // rows keep their addresses
@@ -98,9 +98,9 @@ SceneRows open_and_verify(const std::vector<RowKey>& keys, const Options& option
         if (!scene_keys.empty()) open_rows(result, scene_keys, request, options);
     }
     const unsigned samples = options.verb == Verb::check ? 0 : options.samples;
-    budget.plan(result.rows, samples, options.sample_s, options.runs);
+    shared.budget->plan(result.rows, samples, options.sample_s, options.runs);
     for (const auto& scene : result.scenes)
-        verify_scene(result.rows, *scene, options, image_seen, budget);
+        verify_scene(result.rows, *scene, options, image_seen, shared);
     return result;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/measuring/verify.h"
+#include "bench/measuring/view_recorder.h"
 
 #include <functional>
 #include <memory>
@@ -19,11 +19,11 @@ struct SceneRows {
 [[nodiscard]] std::vector<RowKey> selected_rows(const Options& options,
                                                 const std::function<bool(const std::string&)>& keeps);
 
-/// Loads all scenes, opens their rows, skips those that do not fit the budget, and verifies the others (see verify.h).
+/// Loads all scenes, opens their rows, skips those that do not fit the budget, and verifies the others (verify_rows()).
 /// A scene that cannot be loaded or judged ends its rows with the reason, said once, on standard error. Throws
 /// Error{usage} for a name that means no scene, and as Budget::plan() does.
 [[nodiscard]] SceneRows open_and_verify(const std::vector<RowKey>& keys, const Options& options,
-                                        const ImageSeen& image_seen = {}, Budget& budget = no_budget());
+                                        const ImageSeen& image_seen = {}, const Recording& shared = {});
 
 /// A run without an answer from any device must not look like one that went well. Throws Error{missing} with a reason
 /// where every row is skipped or unsupported. done: "checked" or "measured".

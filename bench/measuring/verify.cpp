@@ -2,8 +2,6 @@
 
 #include "bench/measuring/visits.h"
 #include "bench/rows/row_tracing.h"
-#include "bench/terminal/interrupts.h"
-#include "bench/terminal/progress.h"
 #include "bench/truth/given_oracle.h"
 #include "core/base/hash.h"
 #include "core/base/stopwatch.h"
@@ -94,8 +92,8 @@ std::optional<RowKey> reference_of(const RowKey& key)
 /// The same steps for each row and view.
 class Verifier::Parts {
 public:
-    Parts(SceneWork& scene, const Options& options, const Budget& budget)
-        : scene_(&scene), budget_(&budget), threads_(resolved_threads(options)),
+    Parts(SceneWork& scene, const Options& options, Clock clock)
+        : scene_(&scene), clock_(std::move(clock)), threads_(resolved_threads(options)),
           oracle_(scene.loaded().scene.mesh, threads_), references_(scene, options)
     {
     }
@@ -139,7 +137,7 @@ private:
     {
         poison(hits);
         const TraceJob job = prepare_view(row, view);
-        const auto [kernel_s, wall_s] = timed_launch(*row.session, job, budget_->clock());
+        const auto [kernel_s, wall_s] = timed_launch(*row.session, job, clock_);
         image.kernel_s = kernel_s;
         image.wall_s = wall_s;
         const Stopwatch download;
@@ -223,7 +221,7 @@ private:
     }
 
     SceneWork* scene_;
-    const Budget* budget_;
+    Clock clock_;
     unsigned threads_;
     Oracle oracle_;
     std::optional<GivenOracle> given_oracle_;
@@ -236,8 +234,8 @@ public:
     std::span<const Hit> reference;
 };
 
-Verifier::Verifier(SceneWork& scene, const Options& options, const Budget& budget)
-    : parts_(std::make_unique<Parts>(scene, options, budget))
+Verifier::Verifier(SceneWork& scene, const Options& options, Clock clock)
+    : parts_(std::make_unique<Parts>(scene, options, std::move(clock)))
 {
 }
 
@@ -263,108 +261,12 @@ std::span<const Hit> Verifier::reference() const
     return parts_->reference;
 }
 
-namespace {
-
-ImageVerdict verify_view(Verifier& verifier, RowRun& row, std::size_t view)
-{
-    const ImageVerdict image = verifier.verify(row, view);
-    Traced& result = std::get<Traced>(row.outcome);
-    result.add(image);
-    result.view_hashes.push_back(image.hit_hash);
-    result.hit_hash = hash_of(verifier.hits(), result.hit_hash);
-    return image;
-}
-
-/// Catches a device that answers differently under repetition, after everything else that it was given.
-void verify_again(Verifier& verifier, RowRun& row)
-{
-    if (traced(row)->totals.rays == 0)
-        throw Error(ErrorKind::unsupported,
-                    fmt::format("no primary ray hits, so rays of kind {} cannot be made", name_of(row.key.rays)));
-    if (verifier.trace(row, 0) != traced(row)->view_hashes.front())
-        throw Error(ErrorKind::wrong_result, fmt::format("the hits of view {} changed when it was traced again",
-                                                         row.scene->view_numbers().front()));
-}
-
-} // namespace
-
-namespace {
-
-std::vector<Outcome> outcomes_of(const std::vector<RowRun*>& rows)
-{
-    std::vector<Outcome> outcomes;
-    for (const RowRun* row : rows)
-        outcomes.push_back(row->outcome);
-    return outcomes;
-}
-
-/// In an interrupted run: rows lose what they have of this view, and if it is the first, they have no hits.
-void end_before_view(const std::vector<RowRun*>& rows, const std::vector<Outcome>& before, SceneWork& scene,
-                     std::size_t view)
-{
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (traced(*rows[i]) == nullptr) continue;
-        rows[i]->outcome = before[i];
-        if (view == 0) end_interrupted(*rows[i]);
-    }
-    if (view > 0) scene.keep_first_views(view);
-    progress_line().clear();
-}
-
-} // namespace
-
 Allowance allowance_of(const RowRun& row)
 {
     const std::uint32_t ulps = row.self_test ? row.self_test->allowed_ulps() : 0;
     const bool any_hit = row.key.rays == RayKind::shadow || row.key.rays == RayKind::ao;
     // Boxes are culled by quotients. Where these differ, another of several triangles may be found first.
     return {ulps, ulps > 0 && any_hit && row.key.kernel.structure == Structure::bvh};
-}
-
-void verify_rows(const std::vector<RowRun*>& rows, SceneWork& scene, const Options& options,
-                 const ImageSeen& image_seen, Budget& budget)
-{
-    // Views in the outer loop, rows in the inner one: the oracle traces each view once for all rows.
-    Verifier verifier(scene, options, budget);
-    const std::string stage = "verifying " + scene.label();
-    const std::size_t views = scene.views().size();
-    double done = 0;
-    for (std::size_t view = 0; view < views; ++view) {
-        const double start_s = budget.now();
-        double traced_s = 0;
-        const std::vector<Outcome> before = outcomes_of(rows);
-        for (RowRun* row : rows) {
-            if (is_interrupted()) {
-                end_before_view(rows, before, scene, view);
-                return;
-            }
-            progress_line().show(stage, done / static_cast<double>(views * rows.size()), -1,
-                                 fmt::format("{}, view {} of {}", row_label(row->key), view + 1, views));
-            done += 1;
-            if (row->session == nullptr) continue;
-            guarded(*row, [&] {
-                const ImageVerdict image = verify_view(verifier, *row, view);
-                traced_s += image.wall_s;
-                budget.traced(*row, 1, image.wall_s);
-                if (image_seen) image_seen({*row, view, verifier.hits(), verifier.reference(), image});
-            });
-            budget.review();
-        }
-        budget.judged(scene, budget.now() - start_s - traced_s);
-        something_to_keep();
-    }
-    for (RowRun* row : rows) {
-        progress_line().show(stage, 1, -1, row_label(row->key) + ", again");
-        if (row->session == nullptr || is_interrupted()) continue;
-        const double start_s = budget.now();
-        guarded(*row, [&] {
-            verify_again(verifier, *row);
-            note_compiling(*row);
-            if (row->key.kernel.task == Task::rays) row->ray_hash = hash_of_rays(*row);
-        });
-        budget.traced(*row, 1, budget.now() - start_s);
-    }
-    progress_line().clear();
 }
 
 } // namespace tetrace

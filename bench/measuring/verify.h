@@ -1,7 +1,7 @@
 #pragma once
 
-#include "bench/measuring/budget.h"
 #include "bench/rows/row_run.h"
+#include "bench/rows/row_tracing.h"
 
 #include <functional>
 #include <memory>
@@ -17,8 +17,6 @@ struct SeenImage {
     std::span<const Hit> reference; ///< openmp's; empty if there was nothing to compare
     const ImageVerdict& verdict;
 };
-/// Called after each image.
-using ImageSeen = std::function<void(const SeenImage&)>;
 
 /// How much the row's answers may differ from openmp's: what its device's self-test allows.
 [[nodiscard]] Allowance allowance_of(const RowRun& row);
@@ -29,12 +27,12 @@ using ImageSeen = std::function<void(const SeenImage&)>;
 /// One scene's verification, image by image, for callers that visit the images in their own order.
 class Verifier {
 public:
-    /// budget: whose clock is read; must outlive the verifier.
-    Verifier(SceneWork& scene, const Options& options, const Budget& budget = no_budget());
+    /// clock: the host's; tests of budgets pass their own.
+    Verifier(SceneWork& scene, const Options& options, Clock clock = host_clock());
     ~Verifier();
 
-    /// Traces a view (an index in SceneWork::views()) with an opened row and judges each ray, as verify_rows() does;
-    /// leaves the row unchanged. Fastest where all rows of a view come before the next view.
+    /// Traces a view (an index in SceneWork::views()) with an opened row and judges each ray by two questions: does the device
+    /// return what openmp returns (our kernels, exact mode), and is the method right (the oracle)? Leaves the row unchanged. Fastest where all rows of a view come before the next view.
     /// Throws what the session throws, and Error{wrong_result} where a ray was never written.
     [[nodiscard]] ImageVerdict verify(RowRun& row, std::size_t view);
     /// Traces a view without judging; returns the hash of its hits.
@@ -47,13 +45,5 @@ private:
     class Parts;
     std::unique_ptr<Parts> parts_;
 };
-
-/// Traces every view of a scene once with each of its rows, and judges each ray by two questions: does the device
-/// return what openmp returns (our kernels, exact mode), and is the method right (the oracle)? Then traces the first
-/// view again: its hits must be the same. Rows that cannot be traced end with their reason.
-/// After an interrupt, rows and scene keep the views that all rows have completed.
-/// rows: all of one scene, opened. budget: gets the time of each step, and may skip rows.
-void verify_rows(const std::vector<RowRun*>& rows, SceneWork& scene, const Options& options,
-                 const ImageSeen& image_seen = {}, Budget& budget = no_budget());
 
 } // namespace tetrace

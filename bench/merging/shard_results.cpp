@@ -100,11 +100,6 @@ std::filesystem::path shard_file(const std::filesystem::path& out, const Shard& 
     return out.parent_path() / name;
 }
 
-std::filesystem::path journal_file(const std::filesystem::path& result)
-{
-    return result.string() + ".journal";
-}
-
 ShardResult read_shard(const std::filesystem::path& path)
 {
     ShardResult shard;

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "bench/measuring/run_journal.h"
 #include "bench/options/shard.h"
-#include "bench/reproduce/journal.h"
 #include "bench/results/result_file.h"
 
 #include <filesystem>
@@ -27,8 +27,6 @@ struct ShardResult {
 
 /// The file of a shard of the result `out`, under a launcher: "all.shard-2-of-4.json" of "all.json".
 [[nodiscard]] std::filesystem::path shard_file(const std::filesystem::path& out, const Shard& shard);
-/// The journal of a result.
-[[nodiscard]] std::filesystem::path journal_file(const std::filesystem::path& result);
 
 /// Reads a shard's result and journal. Throws what read_result() and read_journal() throw, and Error{usage} where the
 /// result is of no shard, or the journal is not that shard's, or did not end.

@@ -61,7 +61,9 @@ const VerbHelp verb_help[] = {
      "samples.\n\n"
      "Google Benchmark's own flags (--benchmark_filter=REGEX, --benchmark_repetitions=N, --benchmark_out=FILE, "
      "--benchmark_format=console|json|csv, --benchmark_list_tests and so on) keep their meaning. A repetition is a "
-     "sample; if their number is given, --budget does not apply.",
+     "sample; if their number is given, --budget does not apply.\n\n"
+     "With --out FILE, finished views and samples are also kept in FILE.journal until the result is written: --resume "
+     "goes on after Ctrl-C, a crash or a power cut.",
      "  tetrace bench\n"
      "  tetrace bench --scene bunny --camera-set orbit --views 0-1281:64 --out bunny.json\n"
      "  tetrace bench --scene bunny --method all\n"

@@ -170,7 +170,7 @@ void check_together(const Options& options)
 
 /// `reproduce rivals` is a run of `bench` over given rows; the other tables are of views one after the other.
 constexpr std::string_view only_of_rivals[] = {"--runs"};
-constexpr std::string_view not_of_rivals[] = {"--builds", "--searches", "--resume", "--shard", "--wait"};
+constexpr std::string_view not_of_rivals[] = {"--builds", "--searches", "--shard", "--wait"};
 
 void check_rivals(const Options& options, const CLI::App& app)
 {

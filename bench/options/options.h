@@ -144,7 +144,7 @@ struct Options {
     std::vector<PaperTarget> targets;     ///< of `reproduce`; empty: those of the paper; rivals only by itself
     std::vector<PaperBuild> paper_builds; ///< of `reproduce`; empty: all
     SearchSize searches;                  ///< of `reproduce`
-    bool resume = false;                  ///< of `reproduce`: continue from the journal
+    bool resume = false;                  ///< continue from the journal
 
     std::vector<std::string> gpus;                    ///< of `inspect`: targets; empty: those of targets_of()
     std::vector<Entry> entries;                       ///< of `inspect`; empty: all

@@ -44,9 +44,9 @@ std::vector<OptionRow> output_options()
          "Leave out of the result what identifies the machine: the host's name, and the folders of files.", reporting,
          false, set(&Options::anonymous)},
         {"Output", "--resume", "",
-         "Continue the run whose journal is FILE.journal, for FILE of --out: views and batches of searches in it "
-         "are not repeated. If the journal does not exist, start one.",
-         bit(Verb::reproduce), false, set(&Options::resume)},
+         "Continue the run whose journal is FILE.journal, for FILE of --out: views, samples and batches of searches in "
+         "it are not repeated. If the journal does not exist, start one.",
+         bit(Verb::bench) | bit(Verb::check) | bit(Verb::reproduce), false, set(&Options::resume)},
         {"Output", "--junit", "FILE",
          "Also write the result to FILE as JUnit XML, one test case per row; '-' means standard output, instead of "
          "the table. 'merge' accepts it for shards of 'check'. Default: none.",

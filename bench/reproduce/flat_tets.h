@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/reproduce/image_record.h"
+#include "bench/measuring/image_record.h"
 #include "bench/rows/scene_work.h"
 
 #include <map>

@@ -1,8 +1,8 @@
 #include "bench/reproduce/scene_run.h"
 
+#include "bench/measuring/view_recorder.h"
 #include "bench/reproduce/paper.h"
 #include "bench/rows/rows.h"
-#include "core/base/hash.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -11,81 +11,6 @@
 namespace tetrace {
 
 namespace {
-
-using nlohmann::json;
-
-/// The views of one scene.
-class ViewRecorder : public RowRecorder {
-public:
-    ViewRecorder(SceneRun& run, unsigned samples, double sample_s) : RowRecorder(run, samples, sample_s), run_(&run) {}
-
-private:
-    [[nodiscard]] json head_of(std::size_t view) const override
-    {
-        json head = {{"scene", run_->scene->label()},
-                     {"scene_hash", hash_text(run_->scene->loaded().hash)},
-                     {"view", run_->scene->view_numbers()[view]}};
-        if (view == 0) head["open_s"] = run_->open_s;
-        return head;
-    }
-
-    [[nodiscard]] bool is_ours(const json& entry) const override
-    {
-        return entry.value("scene", "") == run_->scene->label();
-    }
-
-    void check_entry(std::size_t view, const json& entry) const override
-    {
-        const SceneWork& scene = *run_->scene;
-        if (entry.at("scene_hash") != hash_text(scene.loaded().hash))
-            reject_journal(
-                fmt::format("the journal has views of another {}: its mesh or its tets have changed", scene.label()));
-        if (view >= scene.views().size() || entry.at("view") != scene.view_numbers()[view])
-            reject_journal(fmt::format("the journal's views of {} are not those asked for", scene.label()));
-    }
-
-    void prepare(RowRun&, std::size_t) override {} // the scene is all that its rays need
-
-    [[nodiscard]] TraceJob job_of(const RowRun& row, std::size_t view) const override
-    {
-        return run_->scene->job(view, row.packed != nullptr ? &row.packed->data : nullptr, row.device);
-    }
-
-    [[nodiscard]] bool can_repeat_first_job() const override { return true; } // primary rays need no others
-
-    [[nodiscard]] ImageRecord examine(std::size_t i, std::size_t view) override
-    {
-        RowRun& row = run_->rows[i];
-        ImageRecord record;
-        record.verdict = run_->verifier->verify(row, view);
-        const auto hits = run_->verifier->hits();
-        const auto& before = run_->images[i];
-        record.chained_hash = hash_of(hits, before.empty() ? 0 : before.back().chained_hash);
-        const std::uint32_t cap = job_of(row, view).max_steps;
-        record.lost_at_cap = static_cast<std::uint64_t>(
-            std::ranges::count_if(hits, [&](const Hit& hit) { return hit.face_id == LOST && hit.steps >= cap; }));
-        if (run_->flat == nullptr || !is_cdt(row)) return record;
-        record.flawed = run_->flat->walks(row, view, record.verdict.verdicts.flawed);
-        record.any = run_->flat->walks_anywhere(row, view);
-        return record;
-    }
-
-    void keep_first_parts(std::size_t parts) override
-    {
-        run_->scene->keep_first_views(parts);
-        run_->sampling = Sampling::chosen;
-    }
-
-    [[nodiscard]] std::uint64_t hash_of_answers(RowRun& row, std::size_t) override
-    {
-        hits_.assign(run_->scene->rays_per_view(), Hit{POISON, POISON, 0, 0, 0, 0});
-        row.session->read_back(hits_);
-        return hash_of(hits_);
-    }
-
-    SceneRun* run_;
-    std::vector<Hit> hits_;
-};
 
 /// The options, with only those selections that apply to the structure's rows.
 Options options_of(Structure structure, Options options)
@@ -185,7 +110,6 @@ SceneRun open_scene_run(const SceneBuild& build, const Options& options)
 {
     SceneRun run;
     run.build = build;
-    const Stopwatch watch;
     const auto keys = rows_of_build(build, options);
     try {
         load_scene_of(run, options);
@@ -198,16 +122,35 @@ SceneRun open_scene_run(const SceneBuild& build, const Options& options)
             run.rows.push_back(failed_row(key, error));
     }
     run.images.resize(run.rows.size());
-    run.open_s = watch.seconds();
     return run;
 }
 
-void run_views(SceneRun& run, const Options& options, Journal* journal, RunProgress& progress, MachineWatch* watch,
-               Budget& budget)
+namespace {
+
+/// Looks for what only the paper's tables ask for.
+void examine_walks(SceneRun& run, const SeenImage& image, ImageRecord& record)
+{
+    const std::uint32_t cap = job_of(image.row, image.view).max_steps;
+    record.lost_at_cap = static_cast<std::uint64_t>(std::ranges::count_if(
+        image.hits, [&](const Hit& hit) { return hit.face_id == LOST && hit.steps >= cap; }));
+    if (run.flat == nullptr || !is_cdt(image.row)) return;
+    record.flawed = run.flat->walks(image.row, image.view, record.verdict.verdicts.flawed);
+    record.any = run.flat->walks_anywhere(image.row, image.view);
+}
+
+} // namespace
+
+void run_views(SceneRun& run, const Options& options, const Recording& shared)
 {
     if (run.scene == nullptr) return;
-    ViewRecorder recorder(run, run.build.timing ? options.samples : 0, options.sample_s);
-    recorder.run(run.scene->views().size(), run.scene->label(), journal, progress, watch, budget);
+    const unsigned samples = run.build.timing ? options.samples : 0;
+    ViewRecorder recorder(
+        pointers_to(run.rows), run.images, run.verifier.get(), *run.scene, samples, options.sample_s, shared,
+        [&](const SeenImage& image, ImageRecord& record) { examine_walks(run, image, record); });
+    const std::size_t views = run.scene->views().size(), restored = recorder.restore();
+    if (restored < views) shared.budget->plan_views(run.rows, samples, options.sample_s, restored);
+    recorder.run();
+    if (run.scene->views().size() < views) run.sampling = Sampling::chosen; // interrupted
 }
 
 } // namespace tetrace

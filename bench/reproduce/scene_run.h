@@ -3,7 +3,7 @@
 #include "bench/measuring/verify.h"
 #include "bench/reproduce/flat_tets.h"
 #include "bench/reproduce/likeness.h"
-#include "bench/reproduce/row_recorder.h"
+#include "bench/measuring/row_recorder.h"
 #include "bench/reproduce/setup_costs.h"
 
 #include <memory>
@@ -38,7 +38,6 @@ struct SceneRun : RecordedRows {
     Likeness likeness;                ///< to the paper's
     std::unique_ptr<Verifier> verifier;
     std::unique_ptr<FlatTets> flat; ///< null if nothing needs it
-    double open_s = 0;              ///< seconds for loading the scene and opening its rows
 
     std::vector<std::string> flawed_pictures, extreme_pictures; ///< names of files in the result's folder
     std::vector<std::string> picture_problems;                  ///< why one is missing, one sentence each
@@ -73,10 +72,8 @@ using SceneRuns = std::vector<const SceneRun*>;
                                           const std::vector<RowRecord>& rows);
 
 /// Traces every view with every row, verifies each image, times it where asked for, and appends the view to the
-/// journal. Views that are in the journal are taken from there. journal, watch: may be null.
+/// journal. Views that are in the journal are taken from there.
 /// Throws Error{usage} if the journal belongs to another scene or to other rows.
-/// budget: of this scene; may skip rows.
-void run_views(SceneRun& run, const Options& options, Journal* journal, RunProgress& progress,
-               MachineWatch* watch = nullptr, Budget& budget = no_budget());
+void run_views(SceneRun& run, const Options& options, const Recording& shared);
 
 } // namespace tetrace

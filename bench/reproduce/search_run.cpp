@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <fmt/format.h>
 
 namespace tetrace {
 
@@ -77,8 +78,9 @@ Verdicts judge_all(const SearchRays& rays, const Faces& faces, std::uint32_t ray
 /// The batches of a run.
 class BatchRecorder : public RowRecorder {
 public:
-    BatchRecorder(SearchRun& run, const Options& options)
-        : RowRecorder(run, options.samples, options.sample_s), run_(&run), references_(run, options)
+    BatchRecorder(SearchRun& run, const Options& options, const Recording& shared)
+        : RowRecorder(pointers_to(run.rows), run.images, options.samples, options.sample_s, shared), run_(&run),
+          references_(run, options)
     {
     }
 
@@ -94,41 +96,44 @@ private:
             reject_journal("the journal's batches of searches are not those asked for");
     }
 
-    void prepare(RowRun& row, std::size_t part) override
+    [[nodiscard]] std::string name_of_part(std::size_t part) const override
     {
-        load(run_->shard.part(part));
-        row.session->set_rays(rays_.quads);
+        return fmt::format("batch {}", run_->shard.part(part));
     }
 
-    [[nodiscard]] TraceJob job_of(const RowRun&, std::size_t part) const override
+    [[nodiscard]] std::size_t rays_of(const RowRun&, std::size_t part) const override
     {
-        return search_job(std::size_t{tets_of(run_->shard.part(part))} * run_->size.rays);
+        return std::size_t{tets_of(run_->shard.part(part))} * run_->size.rays;
+    }
+
+    [[nodiscard]] std::vector<TraceJob> prepare(RowRun& row, std::size_t part) override
+    {
+        const std::size_t batch = run_->shard.part(part);
+        load(batch);
+        const auto [given, is_new] = given_.try_emplace(&row, batch);
+        if (is_new || given->second != batch) row.session->set_rays(rays_.quads);
+        given->second = batch;
+        return {search_job(rays_of(row, part))};
     }
 
     /// With other rays of as many as the first batch has.
-    [[nodiscard]] bool can_repeat_first_job() const override
+    [[nodiscard]] std::optional<TraceJob> pulse_job(RowRun& row) override
     {
-        return loaded_ && tets_of(*loaded_) == tets_of(run_->shard.part(0));
-    }
-
-    void keep_first_parts(std::size_t parts) override
-    {
-        run_->batches_done = static_cast<std::uint32_t>(parts);
-        run_->sampling = Sampling::chosen;
+        if (!loaded_ || tets_of(*loaded_) != tets_of(run_->shard.part(0))) return std::nullopt;
+        return search_job(rays_of(row, 0));
     }
 
     [[nodiscard]] ImageRecord examine(std::size_t i, std::size_t part) override
     {
-        RowRun& row = run_->rows[i];
+        RowRun& row = *rows()[i];
         ImageRecord record;
         ImageVerdict& verdict = record.verdict;
-        prepare(row, part);
-        const auto [kernel_s, wall_s] = timed_launch(*row.session, job_of(row, part));
+        const auto [kernel_s, wall_s] = timed_launch(*row.session, prepare(row, part));
         verdict.kernel_s = kernel_s;
         verdict.wall_s = wall_s;
         verdict.hit_hash = hash_of_answers(row, part);
         verdict.download_s = row.session->download_s();
-        record.chained_hash = hash_of(faces_, run_->images[i].empty() ? 0 : run_->images[i].back().chained_hash);
+        record.chained_hash = chained_hash(i, faces_);
         compare(row, verdict);
         verdict.verdicts = judged(verdict.hit_hash);
         verdict.totals.rays = faces_.size();
@@ -142,6 +147,12 @@ private:
         faces_.assign(rays_.count(), POISON);
         row.session->read_back(faces_);
         return hash_of(faces_);
+    }
+
+    [[nodiscard]] std::uint64_t repeat(RowRun& row, std::size_t part) override
+    {
+        static_cast<void>(timed_launch(*row.session, prepare(row, part)));
+        return hash_of_answers(row, part);
     }
 
     /// Exact mode guarantees the same faces on every device, and with any number of threads.
@@ -189,6 +200,7 @@ private:
 
     SearchRun* run_;
     FaceReferences references_;
+    std::map<const RowRun*, std::size_t> given_; ///< the batch whose rays each row's session has
     std::optional<std::size_t> loaded_;
     SearchRays rays_; ///< of the loaded batch
     Faces faces_;     ///< that were last read back
@@ -239,10 +251,15 @@ SearchRun open_search_run(const Options& options, const std::vector<Backend*>& b
     return run;
 }
 
-void run_searches(SearchRun& run, const Options& options, Journal* journal, RunProgress& progress, MachineWatch* watch)
+void run_searches(SearchRun& run, const Options& options, const Recording& shared)
 {
-    BatchRecorder recorder(run, options);
-    recorder.run(run.shard.share(batch_count(run.size)), "exit searches", journal, progress, watch);
+    BatchRecorder recorder(run, options, shared);
+    const std::size_t batches = run.shard.share(batch_count(run.size));
+    static_cast<void>(recorder.restore());
+    const std::size_t done = recorder.run(batches, "exit searches");
+    if (done == batches) return;
+    run.batches_done = static_cast<std::uint32_t>(done);
+    run.sampling = Sampling::chosen;
 }
 
 } // namespace tetrace

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/reproduce/row_recorder.h"
+#include "bench/measuring/row_recorder.h"
 
 #include <map>
 #include <optional>
@@ -38,9 +38,7 @@ struct SearchRun : RecordedRows {
 /// In the images, a ray is a search, and what agrees is right. The first wrong or different search gives its tet as the
 /// view, its number among the tet's rays as x, and local faces; reference_face: the least of the faces through which it
 /// exactly leaves.
-/// journal, watch: may be null.
 /// Throws Error{usage} if the journal belongs to other searches or rows.
-void run_searches(SearchRun& run, const Options& options, Journal* journal, RunProgress& progress,
-                  MachineWatch* watch = nullptr);
+void run_searches(SearchRun& run, const Options& options, const Recording& shared);
 
 } // namespace tetrace

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/reproduce/journal.h"
+#include "bench/measuring/journal.h"
 #include "bench/rows/row_run.h"
 
 #include <map>

@@ -2,7 +2,7 @@
 
 #include "bench/reproduce/claims.h"
 #include "bench/reproduce/paper.h"
-#include "bench/reproduce/row_recorder.h"
+#include "bench/measuring/row_recorder.h"
 
 #include <functional>
 #include <vector>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bench/measuring/row_devices.h"
-#include "bench/reproduce/journal.h"
+#include "bench/measuring/journal.h"
 
 namespace tetrace {
 

@@ -95,6 +95,14 @@ std::vector<RowRecord> records_of(const std::vector<RowRun>& rows)
     return records;
 }
 
+std::vector<RowRun*> pointers_to(std::vector<RowRun>& rows)
+{
+    std::vector<RowRun*> pointers;
+    for (RowRun& row : rows)
+        pointers.push_back(&row);
+    return pointers;
+}
+
 bool is_timed(const RowRun& row)
 {
     return row.session != nullptr && has_answers(row);

@@ -33,6 +33,9 @@ struct RowRun : RowRecord {
 [[nodiscard]] RowRecord record_of(const RowRun& row);
 [[nodiscard]] std::vector<RowRecord> records_of(const std::vector<RowRun>& rows);
 
+/// Rows where they are, for work on some of them or on those of several scenes.
+[[nodiscard]] std::vector<RowRun*> pointers_to(std::vector<RowRun>& rows);
+
 /// Whether samples of the row are taken: it is open, and ok or flawed.
 [[nodiscard]] bool is_timed(const RowRun& row);
 

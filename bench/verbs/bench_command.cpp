@@ -1,6 +1,6 @@
+#include "bench/measuring/run_journal.h"
 #include "bench/measuring/scene_records.h"
 #include "bench/merging/shard_results.h"
-#include "bench/merging/view_journal.h"
 #include "bench/output/bench_tables.h"
 #include "bench/terminal/interrupts.h"
 #include "bench/terminal/progress.h"
@@ -32,16 +32,28 @@ void check_anonymous(const Options& options, const BenchmarkFlags& flags)
                                 prints_json ? "--benchmark_format" : "--benchmark_out"));
 }
 
+/// A resumed run has samples that Google Benchmark has not seen.
+void check_resume(const Options& options, const BenchmarkFlags& flags)
+{
+    if (options.resume && (flags.format || !flags.out.empty()))
+        throw Error(ErrorKind::usage, fmt::format("--resume: {} would lack the samples that were taken before; leave it "
+                                                  "out, --out has all of them",
+                                                  flags.format ? "--benchmark_format" : "--benchmark_out"));
+}
+
 } // namespace
 
 BenchResult run_bench(const std::vector<RowKey>& keys, const Options& options, const BenchmarkFlags& flags,
-                      const ImageSeen& image_seen)
+                      Journal* journal)
 {
+    if (journal != nullptr) say_how_to_go_on(options);
     BenchResult result;
     result.missing_scenes = missing_default_scenes(options);
     Budget budget = flags.repetitions ? Budget() : Budget(options.budget_s);
-    SceneRows run = open_and_verify(keys, options, image_seen, budget);
-    result.measurement = measure_rows(run.rows, options, flags, budget);
+    MachineWatch watch = watch_of(host_pulse(resolved_threads(options)), journal);
+    const Recording shared{journal, nullptr, &watch, &budget};
+    SceneRows run = open_and_verify(keys, options, {}, shared);
+    result.measurement = measure_rows(run.rows, options, flags, shared);
     result.rows = records_of(run.rows);
     result.devices = devices_of(result.rows);
     result.interrupted = is_interrupted();
@@ -63,6 +75,7 @@ int bench_command(const Options& options)
     if (!flags.out.empty() && !shard_of(options).is_whole())
         flags.out = shard_file(flags.out, shard_of(options)).string();
     check_anonymous(options, flags);
+    check_resume(options, flags);
     const auto keys =
         selected_rows(options, [&](const std::string& name) { return benchmark_filter_keeps(flags.filter, name); });
     if (options.list || flags.list_tests) return list_rows(keys);
@@ -70,16 +83,16 @@ int bench_command(const Options& options)
     const StopWhenInterrupted stop;
     check_columns(options, bench_columns());
     if (!flags.out.empty()) check_writable("--benchmark_out", flags.out);
-    ViewJournal journal(options);
-    const BenchResult result = run_bench(keys, options, flags, [&](const SeenImage& image) { journal.see(image); });
-    journal.write();
+    const auto journal = open_journal(options, run_head(options, keys));
+    const BenchResult result = run_bench(keys, options, flags, journal.get());
     const Report report = bench_report(result, options);
     // Google Benchmark has already written its own format to standard output, if it was asked to.
     if (!flags.format)
         deliver(options, report);
     else if (options.out)
         deliver_to_file(options, report);
-    if (result.interrupted) return exit_code(ErrorKind::interrupted);
+    if (result.interrupted) return end_interrupted();
+    end_journal(journal.get(), options);
     require_answers(result.rows, "measured");
     return exit_code(result.rows, true);
 }

@@ -1,7 +1,7 @@
 #include "bench/measuring/conformity.h"
 #include "bench/measuring/ray_walks.h"
+#include "bench/measuring/run_journal.h"
 #include "bench/measuring/scene_records.h"
-#include "bench/merging/view_journal.h"
 #include "bench/options/anonymous.h"
 #include "bench/output/check_matrix.h"
 #include "bench/output/difference_pictures.h"
@@ -96,16 +96,15 @@ int check(const Options& options, Checked& checked)
         say(sentence);
     checked.missing = missing_devices(options);
     if (options.picture_folder) checked.pictures = std::make_unique<DifferencePictures>(*options.picture_folder);
-    ViewJournal journal(options);
+    const auto journal = open_journal(options, run_head(options, keys));
+    if (journal != nullptr) say_how_to_go_on(options);
     Budget budget(options.budget_s);
     SceneRows run = open_and_verify(
         keys, options,
         [&](const SeenImage& image) {
-            journal.see(image);
             if (checked.pictures != nullptr) checked.pictures->see(image);
         },
-        budget);
-    journal.write();
+        {journal.get(), nullptr, nullptr, &budget});
     for (RowRun& row : run.rows)
         note_walks(row);
     checked.rows = records_of(run.rows);
@@ -115,7 +114,8 @@ int check(const Options& options, Checked& checked)
         deliver(options, check_report(checked, options));
     else if (options.out)
         deliver_to_file(options, check_report(checked, options));
-    if (is_interrupted()) return exit_code(ErrorKind::interrupted);
+    if (is_interrupted()) return end_interrupted();
+    end_journal(journal.get(), options);
     require_judged(rows, options.required);
     require_answers(rows, "checked");
     if (std::ranges::any_of(rows, [&](const RowRecord& row) { return fails_check(row, options); })) return 1;

@@ -26,10 +26,11 @@ int show_command(const Options& options);
 int report_command(const Options& options);
 int merge_command(const Options& options);
 
-/// Opens, verifies and times the rows of `bench`, or of another run like it, and measures their devices. Throws as
+/// Opens, verifies and times the rows of `bench`, or of another run like it, and measures their devices.
+/// journal: goes on with what it has, and keeps the run's views and samples; may be null. Throws as
 /// open_and_verify() and measure_rows() do.
 [[nodiscard]] BenchResult run_bench(const std::vector<RowKey>& keys, const Options& options,
-                                    const BenchmarkFlags& flags, const ImageSeen& image_seen = {});
+                                    const BenchmarkFlags& flags, Journal* journal);
 
 /// Whether the row fails `check`. A row without an answer does not fail by itself (see exit_code and --require).
 [[nodiscard]] bool fails_check(const RowRecord& row, const Options& options);
@@ -44,8 +45,10 @@ int check_defects(const Options& options);
 /// Throws Error{missing} naming the first backend of the list without a usable device, with the reason.
 void require_devices(const std::vector<std::string>& backends);
 
-/// The command line that run_program() was given, with one more option unless it has that, as a shell takes it.
-[[nodiscard]] std::string command_with(const std::string& option);
+/// From here on an interrupt says that the journal has what is finished, and the command line that goes on with it.
+void say_how_to_go_on(const Options& options);
+/// Says so, where it was asked for, at the end of a run that was interrupted; the exit code.
+[[nodiscard]] int end_interrupted();
 
 /// Writes the file of --junit where it was asked for. problem: why the check ended early, or fails although no row
 /// does; empty where neither is so.

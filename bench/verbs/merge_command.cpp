@@ -134,7 +134,7 @@ void add_scene(Reproduction& all, const SceneBuild& build, const Options& option
         if (row.key.scene == build.label) own.push_back(std::move(row));
     SceneRun& run = all.runs.emplace_back(recorded_scene_run(build, options, std::move(own)));
     if (build.rivals) SetupCosts(&journal).restore(run.rows);
-    run_views(run, options, &journal, all.progress);
+    run_views(run, options, {&journal, &all.progress});
     run.picture_problems.emplace_back("Pictures are drawn by shards, each of its own views.");
     run.close();
 }
@@ -154,7 +154,7 @@ Merged merged_reproduction(const Shards& shards, const Options& asked)
         add_scene(all, build, options, rows, journal);
     if (wants(options, PaperTarget::table5)) {
         SearchRun& run = all.searches.emplace(recorded_search_run(options, rows_of_shards(shards, true)));
-        run_searches(run, options, &journal, all.progress);
+        run_searches(run, options, {&journal, &all.progress});
     }
     make_tables(all, options);
     return {reproduction_report(all, options), rows_exit_code(all), error_of([&] { require_any_answer(all); })};

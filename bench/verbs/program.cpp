@@ -1,3 +1,4 @@
+#include "bench/measuring/run_journal.h"
 #include "bench/options/help.h"
 #include "bench/terminal/progress.h"
 #include "bench/terminal/text.h"
@@ -32,11 +33,18 @@ std::string command_of(const std::vector<std::string>& arguments)
     return text;
 }
 
-std::string command_with(const std::string& option)
+void say_how_to_go_on(const Options& options)
 {
-    const std::string text = command_of(command_line());
-    const bool has = std::ranges::find(command_line(), option) != command_line().end();
-    return has ? text : text + " " + option;
+    const bool resumes = std::ranges::find(command_line(), "--resume") != command_line().end();
+    say_when_interrupted(fmt::format("tetrace: what is finished is in '{}'; to go on: {}{}",
+                                     journal_file(*options.out).string(), command_of(command_line()),
+                                     resumes ? "" : " --resume"));
+}
+
+int end_interrupted()
+{
+    if (const std::string words = words_when_interrupted(); !words.empty()) say(words);
+    return exit_code(ErrorKind::interrupted);
 }
 
 std::string words_when_begun(const Options& options)
@@ -48,9 +56,8 @@ std::string words_when_begun(const Options& options)
     const char* kept = options.verb == Verb::build    ? "scenes that were built before are in the cache"
                        : options.verb == Verb::render ? "pictures that were written before are whole"
                                                       : "an earlier result is unchanged";
-    const char* hint = options.verb == Verb::bench ? "; --budget, --views or --size make it shorter"
-                       : options.verb == Verb::reproduce && !options.out ? "; with --out FILE.json, --resume can go on"
-                                                                         : "";
+    const bool resumes = options.verb == Verb::bench || options.verb == Verb::check || options.verb == Verb::reproduce;
+    const char* hint = resumes && !options.out ? "; with --out FILE.json, --resume can go on" : "";
     return fmt::format("tetrace: interrupted; {}. To begin again: {}{}", kept, command_of(command_line()), hint);
 }
 

@@ -1,4 +1,4 @@
-#include "bench/options/identity.h"
+#include "bench/measuring/run_journal.h"
 #include "bench/reproduce/tables/pictures.h"
 #include "bench/reproduce/yardsticks.h"
 #include "bench/rivals/rival_run.h"
@@ -9,7 +9,6 @@
 #include "bench/verbs/reproduction.h"
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 
 namespace tetrace {
@@ -47,67 +46,22 @@ void add_devices(Reproduction& all, const RecordedRows& run, const Options& opti
     if (devices.size() > all.devices.size()) all.devices = std::move(devices);
 }
 
-/// Everything that determines the results of views and searches, and how they are timed.
 json journal_head(const Options& options, const std::vector<SceneBuild>& builds)
 {
-    const BuildIdentity program = build_identity();
-    json head = {{"version", program.version},
-                 {"commit", program.commit},
-                 {"compiler", program.compiler},
-                 {"flags", program.flags},
-                 {"cpu", host_identity().cpu},
-                 {"views", selected_views(options)},
-                 {"size", {options.width, options.height}},
-                 {"threads", resolved_threads(options)},
-                 {"tile", options.tile_height},
-                 {"buffer_limit", options.buffer_limit},
-                 {"budget_s", std::isinf(options.budget_s) ? json() : json(options.budget_s)},
-                 {"samples", options.samples},
-                 {"sample_s", options.sample_s},
-                 {"shard", text_of(shard_of(options))},
-                 {"scenes", json::array()},
-                 {"rows", json::array()},
-                 {"devices", json::array()}};
+    std::vector<RowKey> rows;
+    json scenes = json::array();
     for (const SceneBuild& build : builds) {
-        const BuildOptions& how = build.request.build;
-        head["scenes"].push_back({{"label", build.label},
-                                  {"name", build.request.name},
-                                  {"domain", name_of(how.domain)},
-                                  {"divisions", how.divisions},
-                                  {"tets", name_of(how.tets)},
-                                  {"effort", how.effort},
-                                  {"repair", how.repair},
-                                  {"switches", how.switches},
-                                  {"resolution", how.resolution},
-                                  {"views", selected_views(options)},
-                                  {"robustness", build.robustness},
-                                  {"timing", build.timing}});
-        for (const RowKey& key : rows_of_build(build, options))
-            head["rows"].push_back(row_name(key));
+        scenes.push_back(scene_head(build.request, build.label));
+        scenes.back()["robustness"] = build.robustness;
+        scenes.back()["timing"] = build.timing;
+        std::ranges::move(rows_of_build(build, options), std::back_inserter(rows));
     }
-    if (wants(options, PaperTarget::table5)) {
-        head["searches"] = {options.searches.tets, options.searches.rays};
-        for (const RowKey& key : select_search_rows(options))
-            head["rows"].push_back(row_name(key));
-    }
-    for (const Backend* backend : all_backends()) {
-        const auto& named = options.backends;
-        if (!named.empty() && std::ranges::find(named, backend->name()) == named.end()) continue; // nor loaded
-        for (const Device& device : backend->devices())
-            if (device.usable) head["devices"].push_back({backend->name(), device.name, device.driver});
-    }
+    const bool searches = wants(options, PaperTarget::table5);
+    if (searches) std::ranges::move(select_search_rows(options), std::back_inserter(rows));
+    json head = run_head(options, rows);
+    head["scenes"] = std::move(scenes);
+    if (searches) head["searches"] = {options.searches.tets, options.searches.rays};
     return head;
-}
-
-std::unique_ptr<Journal> open_journal(const Options& options, const std::vector<SceneBuild>& builds)
-{
-    if (!options.out) {
-        if (options.resume)
-            throw Error(ErrorKind::usage,
-                        "--resume: the journal is in the result's folder; name the result's file with --out");
-        return nullptr;
-    }
-    return std::make_unique<Journal>(options.out->string() + ".journal", journal_head(options, builds), options.resume);
 }
 
 /// Throws Error{usage} if the journal has a line that belongs to none of these builds.
@@ -125,14 +79,13 @@ void check_entries(const Journal& journal, const std::vector<SceneBuild>& builds
 /// Data kept in files next to the result's; null without a result file.
 struct Keeping {
     Keeping(const Options& options, const std::vector<SceneBuild>& builds)
-        : journal(open_journal(options, builds)), yardsticks(journal.get()), costs(journal.get()),
+        : journal(open_journal(options, journal_head(options, builds))), yardsticks(journal.get()), costs(journal.get()),
           watch(watch_of(host_pulse(resolved_threads(options)), journal.get())),
           pictures(options.out ? std::make_unique<ResultPictures>(*options.out) : nullptr)
     {
         if (journal == nullptr) return;
         check_entries(*journal, builds);
-        say_when_interrupted(fmt::format("tetrace: what is finished is in '{}'; to go on: {}",
-                                         journal_file(*options.out).string(), command_with("--resume")));
+        say_how_to_go_on(options);
     }
 
     std::unique_ptr<Journal> journal;
@@ -148,7 +101,7 @@ void run_scene(Reproduction& all, const SceneBuild& build, const Options& option
     SceneRun& run = all.runs.emplace_back(open_scene_run(build, options));
     if (build.rivals) keeping.costs.restore(run.rows);
     Budget budget(budget_s);
-    run_views(run, options, keeping.journal.get(), all.progress, &keeping.watch, budget);
+    run_views(run, options, {keeping.journal.get(), &all.progress, &keeping.watch, &budget});
     if (keeping.pictures != nullptr)
         keeping.pictures->draw(run, build.robustness, wants(options, PaperTarget::figure6));
     run.close();
@@ -158,7 +111,7 @@ void run_scene(Reproduction& all, const SceneBuild& build, const Options& option
 void run_all_searches(Reproduction& all, const Options& options, Keeping& keeping)
 {
     SearchRun& run = all.searches.emplace(open_search_run(options));
-    run_searches(run, options, keeping.journal.get(), all.progress, &keeping.watch);
+    run_searches(run, options, {keeping.journal.get(), &all.progress, &keeping.watch});
     for (RowRun& row : run.rows)
         row.session.reset();
     add_devices(all, run, options, keeping.yardsticks);
@@ -173,11 +126,14 @@ int reproduce_rivals(const Options& asked)
     for (const std::string& sentence : missing)
         say(sentence);
     const StopWhenInterrupted stop;
-    BenchResult result = run_bench(rival_rows(options), options, read_benchmark_flags({}));
+    const auto rows = rival_rows(options);
+    const auto journal = open_journal(options, run_head(options, rows));
+    BenchResult result = run_bench(rows, options, read_benchmark_flags({}), journal.get());
     result.missing_scenes = missing;
     const auto tables = rival_tables(result.rows, contest_scenes(result.scenes), left_out(options));
     deliver(options, rival_report(result, tables, options));
-    if (result.interrupted) return exit_code(ErrorKind::interrupted);
+    if (result.interrupted) return end_interrupted();
+    end_journal(journal.get(), options);
     require_answers(result.rows, "measured");
     return exit_code(result.rows, true);
 }
@@ -213,12 +169,8 @@ int reproduce_command(const Options& asked)
     judge_steadiness(all, keeping.watch);
     make_tables(all, options);
     deliver(options, reproduction_report(all, options));
-    if (is_interrupted()) {
-        if (const std::string words = words_when_interrupted(); !words.empty()) say(words);
-        return exit_code(ErrorKind::interrupted);
-    }
-    if (keeping.journal != nullptr) keeping.journal->finish();
-    say_when_interrupted({});
+    if (is_interrupted()) return end_interrupted();
+    end_journal(keeping.journal.get(), options);
     require_any_answer(all);
     return rows_exit_code(all);
 }

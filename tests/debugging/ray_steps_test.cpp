@@ -3,7 +3,7 @@
 #include "bench/debugging/device_products.h"
 #include "bench/debugging/trace_report.h"
 #include "bench/measuring/ray_walks.h"
-#include "bench/measuring/verify.h"
+#include "bench/measuring/view_recorder.h"
 #include "bench/output/check_differences.h"
 #include "bench/output/row_json.h"
 #include "bench/rows/scene_arguments.h"

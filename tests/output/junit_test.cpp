@@ -1,6 +1,6 @@
 #include "bench/output/junit.h"
 
-#include "bench/measuring/verify.h"
+#include "bench/measuring/view_recorder.h"
 #include "bench/terminal/text.h"
 #include "scenes/procedural.h"
 #include "tests/support/temporary_folder.h"

@@ -1,5 +1,5 @@
-#include "bench/reproduce/image_record.h"
-#include "bench/reproduce/journal.h"
+#include "bench/measuring/image_record.h"
+#include "bench/measuring/journal.h"
 #include "tests/reproduce/journal_lines.h"
 #include "tests/support/temporary_folder.h"
 

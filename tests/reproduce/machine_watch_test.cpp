@@ -34,8 +34,7 @@ protected:
     }
     void run(SceneRun& run, Journal* journal, MachineWatch& watch) const
     {
-        RunProgress progress;
-        run_views(run, options_, journal, progress, &watch);
+        run_views(run, options_, {journal, nullptr, &watch});
     }
 
     Options options_ =
@@ -85,8 +84,7 @@ TEST_F(Watched, searches_are_watched_too)
     watch.pulses().take();
     host_s_ = 0.02;
     SearchRun searches = open_search_run(options);
-    RunProgress progress;
-    run_searches(searches, options, nullptr, progress, &watch);
+    run_searches(searches, options, {.watch = &watch});
     watch.pulses().judge_rows(searches.rows, {});
     for (const RowRun& row : searches.rows)
         EXPECT_EQ(row.pulse_ratio, 2.0);
@@ -123,8 +121,7 @@ TEST_F(Watched, searches_on_a_gpu_have_one_too)
     for (RowRun& row : searches.rows)
         row.device.kind = DeviceKind::gpu;
     searches.rows[0].device.name = "a GPU";
-    RunProgress progress;
-    run_searches(searches, options, nullptr, progress, &watch);
+    run_searches(searches, options, {.watch = &watch});
     for (const RowRun& row : searches.rows)
         EXPECT_TRUE(is_whole(row)) << reason_of(row);
     ASSERT_GE(watch.pulses().found().size(), 2u);

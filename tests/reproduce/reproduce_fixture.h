@@ -13,7 +13,8 @@
 
 namespace tetrace::test {
 
-/// The program's reproduce in a folder of its own, on a scene that it makes itself unless another is named.
+/// The program's reproduce, or another verb that can be resumed, in a folder of its own, on a scene that it makes itself
+/// unless another is named.
 class ReproduceTest : public testing::Test {
 protected:
     /// Starts it; its process. A sample is a pass unless a time is given. killed_at: the line of its journal after
@@ -21,9 +22,9 @@ protected:
     [[nodiscard]] pid_t start(const std::string& arguments, std::size_t killed_at = 0, int signal = SIGKILL) const
     {
         const bool names_backends = arguments.find("--backend") != std::string::npos;
-        const bool names_time = arguments.find("--sample-time") != std::string::npos;
+        const bool names_time = verb_ == "check" || arguments.find("--sample-time") != std::string::npos;
         const bool names_scenes = arguments.find("--scene") != std::string::npos;
-        std::istringstream words("tetrace reproduce " + arguments + (names_backends ? "" : " --backend openmp") +
+        std::istringstream words("tetrace " + verb_ + " " + arguments + (names_backends ? "" : " --backend openmp") +
                                  (names_scenes ? "" : " --scene cubes --resolution 6") +
                                  (names_time ? "" : " --sample-time 0") + " --threads 1");
         std::vector<std::string> list{std::istream_iterator<std::string>(words), {}};
@@ -75,6 +76,7 @@ protected:
     }
 
     TemporaryFolder folder_;
+    std::string verb_ = "reproduce";
 };
 
 /// The one of that id. Throws std::runtime_error without one.

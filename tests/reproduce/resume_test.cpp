@@ -70,12 +70,12 @@ TEST_F(Resume, a_damaged_journal_is_refused)
     refused("-1.5 is not a count", [](json&, json& row) { row["lost_at_cap"] = -1.5; });
     refused("9 of 8 rays", [](json&, json& row) { row["verdict"]["verdicts"]["counts"][4] = 9; });
     refused("-1.0 is not a number, negative", [](json&, json& row) { row["verdict"]["seconds"][0] = -1.0; });
-    const std::string samples = "wants 3 samples, all above 0 s";
+    const std::string samples = "3 samples are wanted, all above 0 s";
     refused(samples, [](json&, json& row) { row["samples_s"] = json::array(); });
     refused(samples, [](json&, json& row) { row["samples_s"][1] = -1e-6; });
     refused(samples, [](json&, json& row) { row["wall_samples_s"][1] = 0; });
     refused("0 passes of a sample", [](json&, json& row) { row["passes"] = 0; });
-    refused("wants its GPU's readings of 3 samples", [](json&, json& row) {
+    refused("a GPU's readings of 3 samples are wanted", [](json&, json& row) {
         row["gpu"] = {{"states", json::array()}, {"dropped", 1}, {"reasons", "heat"}};
     });
     EXPECT_TRUE(contains(resumed([](json& entry, json&) {
@@ -117,6 +117,65 @@ TEST_F(Resume, a_run_that_is_interrupted_keeps_the_views_that_it_has_and_goes_on
     ASSERT_EQ(run(command + "--out r.json --resume").code, 0);
     EXPECT_FALSE(result("r.json").contains("interrupted"));
     EXPECT_EQ(result("r.json").at("rows").at(0).at("hit_hash"), whole.at("rows").at(0).at("hit_hash"));
+}
+
+TEST_F(Resume, check_goes_on_with_the_views_that_it_has_and_leaves_no_journal)
+{
+    verb_ = "check";
+    const std::string command = "--method maria --layout tet80,tet96 --size 16 --views 0-3 ";
+    ASSERT_EQ(run(command + "--out whole.json").code, 0);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "whole.json.journal"));
+    EXPECT_EQ(kill_in_the_middle(command + "--out r.json", "r.json.journal"), 3u);
+    ASSERT_EQ(run(command + "--out r.json --resume").code, 0);
+    json resumed = result("r.json").at("rows"), whole = result("whole.json").at("rows");
+    for (json* const rows : {&resumed, &whole})
+        for (json& row : *rows)
+            row.erase("times");
+    EXPECT_EQ(resumed, whole);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "r.json.journal"));
+    kill_in_the_middle(command + "--out r.json", "r.json.journal");
+    const Ended other = run("--method maria --layout tet80,tet96 --size 32 --views 0-3 --out r.json --resume");
+    EXPECT_EQ(other.code, 2);
+    EXPECT_TRUE(contains(other.errors, "size: [16,16] there, [32,32] here")) << other.errors;
+    EXPECT_EQ(run(command + "--out r.json").code, 0) << "takes seconds: a new run begins anew";
+    write_file(folder_ / "r.json.journal", "a diary");
+    EXPECT_EQ(run(command + "--out r.json").code, 2) << "not a journal";
+    EXPECT_EQ(read_text(folder_ / "r.json.journal"), "a diary");
+}
+
+TEST_F(Resume, bench_goes_on_with_the_samples_that_it_has)
+{
+    verb_ = "bench";
+    const std::string command = "--method maria --layout tet80,tet96 --size 16 --views 0,1 --samples 30 --runs 2 "
+                                "--sample-time 0.05 --out r.json";
+    const auto counts = [](const json& result) {
+        std::vector<std::size_t> taken;
+        for (const json& row : result.at("rows"))
+            taken.push_back(row.at("times").at("samples_s").size());
+        return taken;
+    };
+    const Ended ended = end(start(command, 5, SIGTERM)); // its head, two views, and samples of some seconds
+    EXPECT_EQ(ended.code, 130) << ended.errors;
+    EXPECT_TRUE(contains(ended.errors, "to go on: tetrace bench")) << ended.errors;
+    const json part = result("r.json");
+    EXPECT_EQ(part.at("interrupted"), true);
+    for (const std::size_t taken : counts(part)) {
+        EXPECT_GT(taken, 0u);
+        EXPECT_LT(taken, 60u);
+    }
+    EXPECT_EQ(run(command + " --resume --benchmark_out=g.json").code, 2) << "which would lack some";
+    const Ended whole = run(command + " --resume");
+    ASSERT_EQ(whole.code, 0) << whole.errors;
+    const json resumed = result("r.json");
+    EXPECT_FALSE(resumed.contains("interrupted"));
+    EXPECT_EQ(counts(resumed), (std::vector<std::size_t>{60, 60}));
+    for (std::size_t row = 0; row < 2; ++row) {
+        const json &before = part["rows"][row]["times"].at("samples_s"),
+                   &after = resumed["rows"][row]["times"].at("samples_s");
+        EXPECT_EQ(resumed["rows"][row]["times"].at("runs").size(), 2u);
+        EXPECT_TRUE(std::equal(before.begin(), before.end(), after.begin())) << "not taken again";
+        EXPECT_EQ(part["rows"][row].at("hit_hash"), resumed["rows"][row].at("hit_hash"));
+    }
 }
 
 TEST_F(Resume, a_row_that_goes_on_has_every_key_of_the_whole_run)

@@ -57,7 +57,7 @@ TEST_F(RivalsRun, wrong_command_lines_are_refused)
     };
     refused("rivals --scene nothere", "nothere");
     refused("rivals,table6", "run it by itself");
-    refused("rivals --resume --out a.json", "--resume");
+    refused("rivals --resume", "name the result's file with --out");
     refused("rivals --shard 1/2 --out a.json", "--shard");
     refused("rivals --searches 10x32", "--searches");
     refused("table6 --budget 9", "--budget");

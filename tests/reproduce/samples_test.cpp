@@ -68,8 +68,7 @@ protected:
     }
     void run(SceneRun& scene, Journal* journal = nullptr, MachineWatch* watch = nullptr) const
     {
-        RunProgress progress;
-        run_views(scene, options_, journal, progress, watch);
+        run_views(scene, options_, {journal, nullptr, watch});
         for (const RowRun& row : scene.rows)
             ASSERT_TRUE(is_whole(row)) << reason_of(row);
     }
@@ -245,8 +244,7 @@ TEST_F(Samples, of_searches_last_as_long_as_asked_for_too)
     ASSERT_EQ(searches.rows.size(), 1u);
     searches.rows[0].session =
         std::make_unique<TimedSearches>(std::move(searches.rows[0].session), 0, launches_, pass_s_[0]);
-    RunProgress progress;
-    run_searches(searches, options, nullptr, progress);
+    run_searches(searches, options, {});
     ASSERT_TRUE(is_whole(searches.rows[0])) << reason_of(searches.rows[0]);
     EXPECT_EQ(searches.rows[0].passes, 7u);
     EXPECT_EQ(launches_of(launches_, {0, 7}), 20 * samples);

@@ -80,8 +80,7 @@ SearchRun run_on(const std::vector<Backend*>& backends, const std::string& metho
 {
     const Options options = options_of(methods, threads);
     SearchRun run = open_search_run(options, backends);
-    RunProgress progress;
-    run_searches(run, options, nullptr, progress);
+    run_searches(run, options, {});
     return run;
 }
 
@@ -223,13 +222,13 @@ TEST(SearchRun, a_device_is_compared_where_openmp_has_no_row)
 TEST(SearchRun, faces_that_change_from_one_launch_to_the_next_are_wrong)
 {
     DamagedBackend while_timed("other", [](Faces faces, std::size_t count) { faces[5] ^= count == 3 ? 1u : 0u; });
-    EXPECT_EQ(reason_of(run_on({&while_timed}).rows[0]), "the answers changed while they were timed");
+    EXPECT_EQ(reason_of(run_on({&while_timed}).rows[0]), "the answers of batch 1 changed while they were timed");
     constexpr std::size_t read_backs = 2 * 23; // of the batches: after the first launch, and after the last
     DamagedBackend at_the_end("other",
                               [](Faces faces, std::size_t count) { faces[5] ^= count == read_backs ? 1u : 0u; });
     const RowRun row = std::move(run_on({&at_the_end}).rows[0]);
     EXPECT_EQ(status_of(row), Status::wrong);
-    EXPECT_EQ(reason_of(row), "the first answers changed when they were asked for again");
+    EXPECT_EQ(reason_of(row), "the answers of batch 0 changed when it was traced again");
 }
 
 TEST(SearchRun, wrong_and_lost_faces_are_the_methods_own_where_openmp_has_them)

@@ -20,8 +20,7 @@ inline SceneRun open_run(const std::string& backends = "openmp,embree", const st
                        view_list, "--backend", backends, "--samples", "3", "--sample-time", "0", "--threads", "1"});
     SceneBuild build{scene_requests(options).front(), "cubes", our_build, "cubes", false, true, false, true};
     SceneRun run = open_scene_run(build, options);
-    RunProgress progress;
-    run_views(run, options, nullptr, progress);
+    run_views(run, options, {});
     for (RowRun& row : run.rows)
         row.setup = {}; // build times are the test's too
     return run;

@@ -1,6 +1,6 @@
 #include "bench/measuring/budget.h"
 #include "bench/measuring/measure.h"
-#include "bench/measuring/verify.h"
+#include "bench/measuring/view_recorder.h"
 #include "tests/support/row_runs.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/wrapped_session.h"
@@ -82,7 +82,7 @@ protected:
         std::vector<RowRun*> pointers;
         for (RowRun& row : rows_)
             pointers.push_back(&row);
-        verify_rows(pointers, scene_, options_, {}, limit);
+        verify_rows(pointers, scene_, options_, {}, {.budget = &limit});
         return measure_rows(rows_, options_, read_benchmark_flags({}), limit);
     }
 
@@ -228,7 +228,7 @@ TEST_F(BudgetOfRows, a_row_that_becomes_slow_is_skipped_and_leaves_the_others_th
     Budget limit = budget_of(100);
     limit.plan(rows_, 10);
     *ray_s_[0] *= 20;
-    verify_rows({&rows_[0], &rows_[1]}, scene_, options_, {}, limit);
+    verify_rows({&rows_[0], &rows_[1]}, scene_, options_, {}, {.budget = &limit});
     static_cast<void>(measure_rows(rows_, options_, read_benchmark_flags({}), limit));
     expect_skipped(0);
     expect_measured(1);

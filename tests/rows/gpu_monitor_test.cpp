@@ -1,5 +1,5 @@
 // What is asked of GPUs while rows are timed: NVIDIA's library by a stub, the amdgpu driver's files by a folder.
-#include "bench/measuring/gpu/gpu_monitor.h"
+#include "bench/measuring/gpu_monitor.h"
 
 #include "tests/support/temporary_folder.h"
 

@@ -1,7 +1,7 @@
 #include "bench/measuring/figures.h"
 #include "bench/measuring/measure.h"
 
-#include "bench/measuring/verify.h"
+#include "bench/measuring/view_recorder.h"
 #include "bench/terminal/interrupts.h"
 #include "tests/rows/throttled_at.h"
 #include "tests/rows/timed_session.h"

@@ -2,7 +2,7 @@
 
 #include "bench/measuring/figures.h"
 #include "bench/measuring/measure.h"
-#include "bench/measuring/verify.h"
+#include "bench/measuring/view_recorder.h"
 #include "bench/statistics/statistics.h"
 #include "tests/support/row_runs.h"
 #include "tests/support/wrapped_session.h"
@@ -99,7 +99,7 @@ TEST(Pulse, disturbs_from_a_quarter_on_and_load_from_a_tenth_of_each_processor)
 
 TEST_F(Pulsed, rows_of_a_machine_that_keeps_its_speed_are_not_noisy)
 {
-    Pulses pulses(rows_, host(), clock());
+    Pulses pulses(pointers_to(rows_), host(), clock());
     pulses.take();
     for (int i = 0; i < 5; ++i)
         sample(pulses);
@@ -114,7 +114,7 @@ TEST_F(Pulsed, rows_of_a_machine_that_keeps_its_speed_are_not_noisy)
 // All samples agree, so that neither spread nor interval shows it: the machine was six times slower all the while.
 TEST_F(Pulsed, a_row_is_noisy_where_the_machine_was_slower_beside_half_of_its_samples)
 {
-    Pulses pulses(rows_, host(), clock());
+    Pulses pulses(pointers_to(rows_), host(), clock());
     pulses.take();
     host_s_ = 0.06;
     now_s_ += 3;
@@ -133,7 +133,7 @@ TEST_F(Pulsed, a_row_is_noisy_where_the_machine_was_slower_beside_half_of_its_sa
 
 TEST_F(Pulsed, one_slow_moment_does_not_make_a_row_noisy)
 {
-    Pulses pulses(rows_, host(), clock());
+    Pulses pulses(pointers_to(rows_), host(), clock());
     pulses.take();
     for (int i = 0; i < 5; ++i) {
         host_s_ = i == 2 ? 0.06 : 0.01;
@@ -148,7 +148,7 @@ TEST_F(Pulsed, one_slow_moment_does_not_make_a_row_noisy)
 
 TEST_F(Pulsed, is_taken_between_samples_but_not_more_often_than_every_other_second)
 {
-    Pulses pulses(rows_, host(), clock());
+    Pulses pulses(pointers_to(rows_), host(), clock());
     pulses.take();
     for (int i = 0; i < 100; ++i) {
         pulses.take_if_due();
@@ -159,7 +159,7 @@ TEST_F(Pulsed, is_taken_between_samples_but_not_more_often_than_every_other_seco
 
 TEST_F(Pulsed, rows_on_the_host_are_noisy_where_others_used_it)
 {
-    Pulses pulses(rows_, host(), clock());
+    Pulses pulses(pointers_to(rows_), host(), clock());
     pulses.take();
     sample(pulses);
     pulses.judge_rows(rows_, MachineLoad{1.0, 2, 2});
@@ -172,7 +172,7 @@ TEST_F(Pulsed, a_gpu_has_a_pulse_of_its_own_which_load_of_the_host_does_not_touc
     rows_[1].device.kind = DeviceKind::gpu;
     rows_[1].device.name = "a GPU";
     rows_[1].session = std::make_unique<TimedSession>(std::move(rows_[1].session), gpu_s);
-    Pulses pulses(rows_, host(), clock());
+    Pulses pulses(pointers_to(rows_), host(), clock());
     pulses.take();
     gpu_s = 1.0; // its clock went down
     now_s_ += 3;
@@ -191,7 +191,7 @@ TEST_F(Pulsed, a_pulse_ends_where_its_row_fails)
     double gpu_s = 0.5;
     rows_[1].device.kind = DeviceKind::gpu;
     rows_[1].session = std::make_unique<TimedSession>(std::move(rows_[1].session), gpu_s);
-    Pulses pulses(rows_, host(), clock());
+    Pulses pulses(pointers_to(rows_), host(), clock());
     pulses.take();
     rows_[1].outcome = Failed{ErrorKind::internal, "the device was lost"};
     pulses.take();

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/measuring/gpu/gpu_monitor.h"
+#include "bench/measuring/gpu_monitor.h"
 
 namespace tetrace::test {
 

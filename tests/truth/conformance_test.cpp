@@ -1,6 +1,6 @@
 // Every usable device against what tests/expected/ says of its implementation: a change in either direction fails.
 #include "bench/measuring/conformity.h"
-#include "bench/measuring/verify.h"
+#include "bench/measuring/view_recorder.h"
 #include "bench/output/device_json.h"
 #include "core/base/error.h"
 #include "scenes/procedural.h"

@@ -1,4 +1,4 @@
-#include "bench/measuring/verify.h"
+#include "bench/measuring/view_recorder.h"
 
 #include "bench/measuring/conformity.h"
 #include "bench/measuring/ray_walks.h"
@@ -232,7 +232,7 @@ TEST_F(Verify, a_device_that_changes_its_answer_is_wrong)
     int calls = 0;
     const RowRun row = verified("other", [&](std::span<Hit> hits) { hits[3].steps += ++calls > 2 ? 1u : 0u; });
     EXPECT_EQ(status_of(row), Status::wrong);
-    EXPECT_EQ(reason_of(row), "the hits of view 0 changed when it was traced again");
+    EXPECT_EQ(reason_of(row), "the answers of view 0 changed when it was traced again");
 }
 
 TEST_F(Verify, a_device_that_writes_elsewhere_is_wrong)

@@ -1,10 +1,12 @@
-#include "bench/reproduce/image_record.h"
+#include "bench/measuring/image_record.h"
 
 #include "bench/measuring/budget.h"
 #include "bench/rows/json_numbers.h"
 #include "bench/rows/ray_json.h"
 #include "core/base/hash.h"
 
+#include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <stdexcept>
 
@@ -132,34 +134,23 @@ GpuReadings gpu_readings_from(const json& object)
 
 json record_json(const ImageRecord& record)
 {
-    json object = {{"verdict", verdict_json(record.verdict)},
-                   {"chained_hash", hash_text(record.chained_hash)},
-                   {"lost_at_cap", record.lost_at_cap},
-                   {"flat", {record.flawed.rays, record.flawed.through_flat, record.any.rays, record.any.through_flat}},
-                   {"samples_s", record.samples_s},
-                   {"wall_samples_s", record.wall_samples_s},
-                   {"sampled_s", record.sampled_s}};
-    if (record.passes > 1) object["passes"] = record.passes;
-    if (record.gpu) object["gpu"] = gpu_readings_json(*record.gpu);
+    json object = samples_json(record);
+    object["verdict"] = verdict_json(record.verdict);
+    object["chained_hash"] = hash_text(record.chained_hash);
+    object["lost_at_cap"] = record.lost_at_cap;
+    object["flat"] = {record.flawed.rays, record.flawed.through_flat, record.any.rays, record.any.through_flat};
     return object;
 }
 
 ImageRecord record_from(const json& object)
 {
     const json& flat = object.at("flat");
-    ImageRecord record = {verdict_from(object.at("verdict")),
-                          hash_from(object.at("chained_hash")),
-                          number_from(object.at("lost_at_cap")),
-                          {number_from(flat.at(0)), number_from(flat.at(1))},
-                          {number_from(flat.at(2)), number_from(flat.at(3))},
-                          object.at("samples_s"),
-                          object.at("wall_samples_s"),
-                          object.at("sampled_s")};
-    if (object.contains("passes")) record.passes = count_from<std::uint32_t>(object["passes"]);
-    if (record.passes < 1 || record.passes > max_passes)
-        throw std::domain_error(fmt::format("{} passes of a sample", record.passes));
-    if (object.contains("gpu")) record.gpu = gpu_readings_from(object["gpu"]);
-    return record;
+    return {samples_from(object),
+            verdict_from(object.at("verdict")),
+            hash_from(object.at("chained_hash")),
+            number_from(object.at("lost_at_cap")),
+            {number_from(flat.at(0)), number_from(flat.at(1))},
+            {number_from(flat.at(2)), number_from(flat.at(3))}};
 }
 
 /// A value of an enumeration, from the first allowed one to the last.
@@ -189,6 +180,49 @@ void require_possible(const ImageRecord& record)
 }
 
 } // namespace
+
+nlohmann::json samples_json(const RowSamples& samples)
+{
+    json object = {{"samples_s", samples.samples_s},
+                   {"wall_samples_s", samples.wall_samples_s},
+                   {"sampled_s", samples.sampled_s}};
+    if (!samples.latency_samples_s.empty()) object["latency_samples_s"] = samples.latency_samples_s;
+    if (samples.passes > 1) object["passes"] = samples.passes;
+    if (samples.gpu) object["gpu"] = gpu_readings_json(*samples.gpu);
+    return object;
+}
+
+RowSamples samples_from(const nlohmann::json& object)
+{
+    RowSamples samples;
+    object.at("samples_s").get_to(samples.samples_s);
+    object.at("wall_samples_s").get_to(samples.wall_samples_s);
+    object.at("sampled_s").get_to(samples.sampled_s);
+    if (object.contains("latency_samples_s")) object["latency_samples_s"].get_to(samples.latency_samples_s);
+    if (object.contains("passes")) samples.passes = count_from<std::uint32_t>(object["passes"]);
+    if (samples.passes < 1 || samples.passes > max_passes)
+        throw std::domain_error(fmt::format("{} passes of a sample", samples.passes));
+    if (object.contains("gpu")) samples.gpu = gpu_readings_from(object["gpu"]);
+    return samples;
+}
+
+void require_samples(const RowSamples& samples, std::size_t count, bool with_intervals)
+{
+    const auto is_time = [](double seconds) { return std::isfinite(seconds) && seconds > 0; };
+    for (const auto* times : {&samples.samples_s, &samples.wall_samples_s})
+        if (times->size() != count || !std::ranges::all_of(*times, is_time))
+            throw std::domain_error(fmt::format("{} samples are wanted, all above 0 s", count));
+    if (!std::ranges::all_of(samples.latency_samples_s, is_time))
+        throw std::domain_error("a pass of single launches must take more than 0 s");
+    if (!with_intervals) return;
+    const auto is_interval = [](const auto& interval) {
+        return std::isfinite(interval.second) && 0 <= interval.first && interval.first <= interval.second;
+    };
+    if (samples.sampled_s.size() != count || !std::ranges::all_of(samples.sampled_s, is_interval))
+        throw std::domain_error(fmt::format("the times of {} samples are wanted", count));
+    if (samples.gpu && samples.gpu->states.size() != count)
+        throw std::domain_error(fmt::format("a GPU's readings of {} samples are wanted", count));
+}
 
 nlohmann::json outcome_json(const ImageOutcome& outcome)
 {

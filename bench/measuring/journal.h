@@ -17,12 +17,12 @@ class Journal {
 public:
     /// Begins a journal, or continues one.
     /// head: an object that names everything that determines the entries. resume: use the entries of an existing
-    /// journal; if there is none, begin one.
-    /// An incomplete last line is dropped. Throws Error{usage} if there is an unfinished journal and resume is
-    /// false, if its head differs (the text names the differences), if it is older than checksums, or if another
+    /// journal; if there is none, begin one. replaces: without resume, also begin anew where a run did not end.
+    /// An incomplete last line is dropped. Throws Error{usage} if there is an unfinished journal that is
+    /// neither to be resumed nor replaced, if its head differs (the text names the differences), if it is older than checksums, or if another
     /// process is writing it; Error{invalid_input} naming file and line where a line is damaged, missing or out of its
     /// order, if it is not a regular file, exceeds 1 GiB, or cannot be read or written.
-    Journal(std::filesystem::path path, const nlohmann::json& head, bool resume);
+    Journal(std::filesystem::path path, const nlohmann::json& head, bool resume, bool replaces = false);
     /// The entries of all shards of a run, in the order in which it would have written them: a journal without a file,
     /// to which nothing is added.
     explicit Journal(std::vector<nlohmann::json> merged);
@@ -43,7 +43,7 @@ public:
 
 private:
     void open_and_lock();
-    [[nodiscard]] bool read(const nlohmann::json& head, bool resume);
+    [[nodiscard]] bool read(const nlohmann::json& head, bool resume, bool replaces);
     void write_line(const nlohmann::json& line);
     [[noreturn]] void fail(const char* doing) const;
 

@@ -1,6 +1,6 @@
 // NVIDIA's management library, which comes with its driver. Its functions are declared here as its documentation states
 // them (NVML API reference, "Device Queries"): nothing of it is needed to build.
-#include "bench/measuring/gpu/gpu_monitor.h"
+#include "bench/measuring/gpu_monitor.h"
 
 #include <dlfcn.h>
 #include <string_view>

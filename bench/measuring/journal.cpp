@@ -1,4 +1,4 @@
-#include "bench/reproduce/journal.h"
+#include "bench/measuring/journal.h"
 
 #include "core/base/error.h"
 #include "core/base/hash.h"
@@ -146,12 +146,12 @@ struct OpenFile {
 
 } // namespace
 
-Journal::Journal(std::filesystem::path path, const json& asked, bool resume) : path_(std::move(path))
+Journal::Journal(std::filesystem::path path, const json& asked, bool resume, bool replaces) : path_(std::move(path))
 {
     const json head = json::parse(json_text(asked)); // as it comes back from the file
     open_and_lock();
     try {
-        if (read(head, resume)) return;
+        if (read(head, resume, replaces)) return;
         checksum_ = 0;
         if (::ftruncate(file_, 0) != 0) fail("emptying");
         write_line({{head_key, head}});
@@ -212,9 +212,17 @@ void Journal::open_and_lock()
 }
 
 /// Whether there are entries to continue from.
-bool Journal::read(const json& head, bool resume)
+bool Journal::read(const json& head, bool resume, bool replaces)
 {
-    const std::string text = whole_lines(read_text(file_, path_));
+    std::string text = read_text(file_, path_);
+    if (replaces && !resume) {
+        const std::size_t known = std::min(text.size(), before_checksum.size()); // a killed run may have written less
+        if (text.starts_with(before_checksum.substr(0, known)) || is_old(text)) return false;
+        throw Error(ErrorKind::usage, fmt::format("'{}' is not a journal of tetrace and would be replaced by one; move "
+                                                  "it away, or name another file with --out",
+                                                  path_.string()));
+    }
+    text = whole_lines(std::move(text));
     if (text.empty()) return false;
     if (is_old(text)) {
         if (!resume && text.ends_with("\n" + finished_line.dump() + "\n")) return false;

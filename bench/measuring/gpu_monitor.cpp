@@ -1,4 +1,4 @@
-#include "bench/measuring/gpu/gpu_monitor.h"
+#include "bench/measuring/gpu_monitor.h"
 
 #include "bench/rows/physical_device.h"
 
