@@ -2,7 +2,7 @@
 
 #include "bench/debugging/trace_sheet.h"
 #include "bench/measuring/scene_records.h"
-#include "bench/output/row_json.h"
+#include "bench/output/row_fields.h"
 #include "bench/rows/ray_json.h"
 
 #include <algorithm>

@@ -16,9 +16,9 @@ struct FlatWalks {
 
 /// Samples of a row's work, in the order in which they were taken.
 struct RowSamples {
-    std::vector<double> samples_s = {};         ///< device seconds of a pass
-    std::vector<double> wall_samples_s = {};    ///< of a pass, launch to end, by the host's clock
-    std::vector<double> latency_samples_s = {}; ///< as RowRecord::latency_samples_s
+    std::vector<double> samples_s = {};                    ///< device seconds of a pass
+    std::vector<double> wall_samples_s = {};               ///< of a pass, launch to end, by the host's clock
+    std::vector<double> latency_samples_s = {};            ///< as RowRecord::latency_samples_s
     std::vector<std::pair<double, double>> sampled_s = {}; ///< begin and end of each, by the clock of MachineWatch
     std::uint32_t passes = 1;                              ///< of a sample
     std::optional<GpuReadings> gpu = {};                   ///< of a GPU that reports any

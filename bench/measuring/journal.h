@@ -19,9 +19,9 @@ public:
     /// head: an object that names everything that determines the entries. resume: use the entries of an existing
     /// journal; if there is none, begin one. replaces: without resume, also begin anew where a run did not end.
     /// An incomplete last line is dropped. Throws Error{usage} if there is an unfinished journal that is
-    /// neither to be resumed nor replaced, if its head differs (the text names the differences), if it is older than checksums, or if another
-    /// process is writing it; Error{invalid_input} naming file and line where a line is damaged, missing or out of its
-    /// order, if it is not a regular file, exceeds 1 GiB, or cannot be read or written.
+    /// neither to be resumed nor replaced, if its head differs (the text names the differences), if it is older than
+    /// checksums, or if another process is writing it; Error{invalid_input} naming file and line where a line is
+    /// damaged, missing or out of its order, if it is not a regular file, exceeds 1 GiB, or cannot be read or written.
     Journal(std::filesystem::path path, const nlohmann::json& head, bool resume, bool replaces = false);
     /// The entries of all shards of a run, in the order in which it would have written them: a journal without a file,
     /// to which nothing is added.

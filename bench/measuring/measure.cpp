@@ -4,22 +4,17 @@
 #include "bench/rows/json_numbers.h"
 #include "bench/rows/physical_device.h"
 #include "bench/rows/row_tracing.h"
-#include "bench/terminal/colour.h"
 #include "bench/terminal/interrupts.h"
 #include "bench/terminal/progress.h"
 #include "core/base/hash.h"
 #include "core/base/stopwatch.h"
-#include "core/base/whole_file.h"
 
 #include <algorithm>
 #include <fmt/format.h>
 #include <functional>
-#include <iostream>
 #include <map>
 #include <numeric>
-#include <sstream>
 #include <stdexcept>
-#include <unistd.h>
 #include <utility>
 
 namespace tetrace {
@@ -87,8 +82,8 @@ void warm_up(RowRun& row, const Sampler& sampler, Budget& budget, const std::fun
     guarded(row, [&] {
         const std::vector<ViewBatch> views = single_views(row);
         double download_s = 0;
-        Pass pass =
-            pass_of(row, views, [&](const ViewBatch&, std::span<const Hit>) { download_s += row.session->download_s(); });
+        Pass pass = pass_of(row, views,
+                            [&](const ViewBatch&, std::span<const Hit>) { download_s += row.session->download_s(); });
         pass.tell_progress = tell_progress;
         LaunchTimes times = run_pass(pass, 1, budget.clock());
         std::get<Traced>(row.outcome).download_s = download_s;
@@ -195,9 +190,8 @@ void take_sample(RowRun& row, const Sweep& sweep)
     const std::size_t taken = samples_in_run(row);
     Pass pass = taken + 1 < sweep.samples
                     ? pass_of(row, row.batches)
-                    : pass_of(row, row.batches, [&](const ViewBatch& views, std::span<const Hit> hits) {
-                          check_hits(row, views, hits);
-                      });
+                    : pass_of(row, row.batches,
+                              [&](const ViewBatch& views, std::span<const Hit> hits) { check_hits(row, views, hits); });
     pass.tell_progress = tell;
     RowSamples sample;
     sweep.sampler->take(pass, sample);
@@ -247,56 +241,6 @@ bool register_rows(const std::vector<RowRun*>& rows, Sweep& sweep)
             ->Unit(benchmark::kMillisecond);
     }
     return is_any;
-}
-
-/// As Google Benchmark chooses them, but that NO_COLOR is honoured.
-benchmark::ConsoleReporter::OutputOptions console_options(const BenchmarkFlags& flags)
-{
-    using Console = benchmark::ConsoleReporter;
-    const int colour = flags.colour.value_or(has_colour(STDOUT_FILENO)) ? Console::OO_Color : Console::OO_None;
-    return static_cast<Console::OutputOptions>(colour | (flags.tabular ? Console::OO_Tabular : Console::OO_None));
-}
-
-std::unique_ptr<RowReporter> make_display(const BenchmarkFlags& flags, std::size_t runs)
-{
-    std::vector<std::unique_ptr<benchmark::BenchmarkReporter>> receivers;
-    if (flags.format) receivers.push_back(make_reporter(*flags.format, std::cout, console_options(flags)));
-    return std::make_unique<RowReporter>(std::move(receivers), runs);
-}
-
-/// Keeps what is to be written to the file of --benchmark_out. Google Benchmark gives the stream of that option only
-/// to the file reporter; read_benchmark_flags() lets it lead nowhere.
-class FileReporter : public RowReporter {
-public:
-    FileReporter(const std::string& format, std::size_t runs)
-        : FileReporter(format, runs, std::make_unique<std::ostringstream>())
-    {
-    }
-    [[nodiscard]] std::string text() const { return text_->str(); }
-
-private:
-    FileReporter(const std::string& format, std::size_t runs, std::unique_ptr<std::ostringstream> text)
-        : RowReporter(one(make_reporter(format, *text)), runs), text_(std::move(text))
-    {
-    }
-    static std::vector<std::unique_ptr<benchmark::BenchmarkReporter>>
-    one(std::unique_ptr<benchmark::BenchmarkReporter> reporter)
-    {
-        std::vector<std::unique_ptr<benchmark::BenchmarkReporter>> list;
-        list.push_back(std::move(reporter));
-        return list;
-    }
-
-    std::unique_ptr<std::ostringstream> text_;
-};
-
-/// Google Benchmark looks at no stream's state.
-void require_printed(const BenchmarkFlags& flags)
-{
-    std::cout.flush();
-    if (flags.format && !std::cout)
-        throw Error(ErrorKind::invalid_input, "writing the output of --benchmark_format to standard output failed; "
-                                              "check that the disk is not full, or use --benchmark_out FILE");
 }
 
 /// All are closed before the first is opened again.
@@ -419,8 +363,7 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
         sweep.done += static_cast<double>(row.samples_s.size());
     watch.monitors().find(pointers_to(rows));
     const std::size_t reports = groups.size() * result.runs;
-    const auto display = make_display(flags, reports);
-    const auto file = flags.out.empty() ? nullptr : std::make_unique<FileReporter>(flags.out_format, reports);
+    GoogleReports google(flags, reports);
     watch.pulses().take();
     for (unsigned run = earlier.run; run < result.runs && !is_interrupted(); ++run) {
         if (run > earlier.run) {
@@ -429,8 +372,7 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
         }
         log.begin_run(run);
         for (const auto& group : groups)
-            // The filter was applied to the rows themselves, under the reported names.
-            if (register_rows(group, sweep)) benchmark::RunSpecifiedBenchmarks(display.get(), file.get(), "all");
+            if (register_rows(group, sweep)) google.run();
         count_samples(rows);
     }
     watch.pulses().take();
@@ -439,8 +381,7 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
     result.pulses = watch.pulses().found();
     watch.pulses().judge_rows(rows, result.load);
     progress_line().clear();
-    require_printed(flags);
-    if (file != nullptr) write_whole(flags.out, file->text());
+    google.write();
     check_rows_after(rows);
     result.wall_s = stopwatch.seconds();
     return result;

@@ -1,37 +1,29 @@
 #pragma once
 
-#include <benchmark/benchmark.h>
+#include "bench/options/benchmark_flags.h"
 
+#include <benchmark/benchmark.h>
 #include <memory>
-#include <string>
-#include <vector>
+#include <sstream>
 
 namespace tetrace {
 
-/// Passes Google Benchmark's reports on to several reporters, under the bare row names. It removes the suffixes
-/// "/iterations:1/manual_time", which are the same for all rows and would make names depend on the number of
-/// measurements. Leaves out the warning that the library was built for debugging: what it times here is one call, by
-/// our own clock. Several runs in turn are one report.
-class RowReporter : public benchmark::BenchmarkReporter {
+/// What Google Benchmark prints and writes about rows that it runs, where it was asked to.
+class GoogleReports {
 public:
-    explicit RowReporter(std::vector<std::unique_ptr<benchmark::BenchmarkReporter>> receivers, std::size_t runs = 1)
-        : receivers_(std::move(receivers)), runs_left_(runs)
-    {
-    }
+    /// parts: run() will be called so often at most, for one report.
+    GoogleReports(const BenchmarkFlags& flags, std::size_t parts);
+    ~GoogleReports();
 
-    bool ReportContext(const Context& context) override;
-    void ReportRuns(const std::vector<Run>& runs) override;
-    void Finalize() override;
+    /// Runs the registered benchmarks. The flags' filter was applied to the rows themselves, under the reported names.
+    void run();
+    /// Writes the file of --benchmark_out. Throws Error{invalid_input} if it cannot be written, or what was printed.
+    void write() const;
 
 private:
-    std::vector<std::unique_ptr<benchmark::BenchmarkReporter>> receivers_;
-    std::size_t runs_left_; ///< the report ends with the last
-    bool has_begun_ = false;
+    BenchmarkFlags flags_;
+    std::ostringstream text_; ///< for the file: Google Benchmark does not notice a full disk
+    std::unique_ptr<benchmark::BenchmarkReporter> display_, file_;
 };
-
-/// Google Benchmark's own reporter for a format: "console", "json" or "csv". Its options are those of the console's.
-[[nodiscard]] std::unique_ptr<benchmark::BenchmarkReporter>
-make_reporter(const std::string& format, std::ostream& stream,
-              benchmark::ConsoleReporter::OutputOptions options = benchmark::ConsoleReporter::OO_None);
 
 } // namespace tetrace

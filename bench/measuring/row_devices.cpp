@@ -1,7 +1,6 @@
 #include "bench/measuring/row_devices.h"
 
 #include "bench/measuring/figures.h"
-#include "bench/rows/device_abilities.h"
 #include "bench/rows/physical_device.h"
 #include "bench/terminal/progress.h"
 

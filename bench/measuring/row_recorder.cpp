@@ -216,7 +216,9 @@ void RowRecorder::time_group(const std::vector<RowRun*>& group, std::size_t part
     const auto for_timed_rows = [&](const auto& work) {
         for (RowRun* const row : group)
             if (is_timed(*row))
-                guarded(*row, [&] { work(Pass{row, 1, [this, row, part](std::size_t) { return prepare(*row, part); }}); });
+                guarded(*row, [&] {
+                    work(Pass{row, 1, [this, row, part](std::size_t) { return prepare(*row, part); }});
+                });
     };
     for_timed_rows(
         [&](const Pass& pass) { sampler.warmed_up(*pass.row, run_pass(pass, 1, sampler.clock()).kernel_s); });
@@ -276,8 +278,7 @@ void RowRecorder::restore(std::size_t part, const json& entry)
         if (traced(*row) != nullptr && !entry.at("rows").contains(row_name(row->key)))
             reject_journal(fmt::format("the journal lacks hits of {}, which could not run then", row_name(row->key)));
     for (std::size_t i = 0; i < rows_.size(); ++i)
-        if (traced(*rows_[i]) != nullptr)
-            restore(i, part, outcome_from_json(entry["rows"][row_name(rows_[i]->key)]));
+        if (traced(*rows_[i]) != nullptr) restore(i, part, outcome_from_json(entry["rows"][row_name(rows_[i]->key)]));
 }
 
 void RowRecorder::restore(std::size_t i, std::size_t part, ImageOutcome outcome)
@@ -305,7 +306,8 @@ void RowRecorder::check_record(std::size_t i, std::size_t part, const ImageRecor
     // Where several kinds of machines took the samples, a merged journal has none.
     if (is_merged() && record.samples_s.empty() && record.wall_samples_s.empty()) return;
     try {
-        require_samples(record, has_answers(row) ? samples_ : 0, shared_.watch != nullptr && samples_ > 0 && !is_merged());
+        require_samples(record, has_answers(row) ? samples_ : 0,
+                        shared_.watch != nullptr && samples_ > 0 && !is_merged());
     } catch (const std::domain_error& error) {
         throw std::domain_error(fmt::format("{}: {}", row_name(row.key), error.what()));
     }

@@ -31,9 +31,10 @@ public:
     Verifier(SceneWork& scene, const Options& options, Clock clock = host_clock());
     ~Verifier();
 
-    /// Traces a view (an index in SceneWork::views()) with an opened row and judges each ray by two questions: does the device
-    /// return what openmp returns (our kernels, exact mode), and is the method right (the oracle)? Leaves the row unchanged. Fastest where all rows of a view come before the next view.
-    /// Throws what the session throws, and Error{wrong_result} where a ray was never written.
+    /// Traces a view (an index in SceneWork::views()) with an opened row and judges each ray by two questions: does the
+    /// device return what openmp returns (our kernels, exact mode), and is the method right (the oracle)? Leaves the
+    /// row unchanged. Fastest where all rows of a view come before the next view. Throws what the session throws, and
+    /// Error{wrong_result} where a ray was never written.
     [[nodiscard]] ImageVerdict verify(RowRun& row, std::size_t view);
     /// Traces a view without judging; returns the hash of its hits.
     [[nodiscard]] std::uint64_t trace(RowRun& row, std::size_t view);

@@ -1,7 +1,7 @@
 #include "bench/merging/merged_rows.h"
 
-#include "bench/merging/machines.h"
 #include "bench/measuring/image_record.h"
+#include "bench/merging/machines.h"
 #include "bench/show/recorded_rows.h"
 #include "core/base/error.h"
 #include "core/base/hash.h"

@@ -1,4 +1,4 @@
-#include "bench/output/bench_answer.h"
+#include "bench/output/bench_report.h"
 
 #include "bench/measuring/figures.h"
 #include "bench/statistics/statistics.h"

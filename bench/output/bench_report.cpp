@@ -1,10 +1,8 @@
 #include "bench/output/bench_report.h"
 
 #include "bench/measuring/figures.h"
-#include "bench/output/bench_answer.h"
-#include "bench/output/bench_tables.h"
 #include "bench/output/device_json.h"
-#include "bench/output/row_json.h"
+#include "bench/output/row_fields.h"
 #include "bench/statistics/median_ratio.h"
 #include "bench/terminal/text.h"
 

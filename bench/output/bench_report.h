@@ -5,7 +5,10 @@
 #include "bench/measuring/row_devices.h"
 #include "bench/measuring/scene_rows.h"
 #include "bench/output/report.h"
+#include "bench/output/row_fields.h"
 #include "bench/results/result_value.h"
+
+#include <string>
 
 namespace tetrace {
 
@@ -42,5 +45,39 @@ struct BenchResult {
 
 /// Rows without an answer and their reasons: a line for all rows of a scene that have the same one, and an empty line.
 [[nodiscard]] Sheet failure_lines(const std::vector<RowRecord>& rows);
+
+/// What a run found, in three lines: the fastest row of each scene; CDT compared with BVH, and each API with openmp;
+/// whether to trust the rates. Empty if nothing was timed.
+[[nodiscard]] Sheet answer_of(const BenchResult& result);
+
+/// What says whether a run's rates are to be trusted.
+struct Steadiness {
+    std::optional<MachineLoad> load = {}; ///< empty if the system does not tell
+    std::vector<Pulse> pulses = {};
+    std::size_t timed = 0, noisy = 0, disturbed = 0; ///< rows
+
+    void count(const RowRecord& row);
+};
+
+/// Whether to trust them, as a sentence. Precondition: a row was timed.
+[[nodiscard]] std::string trust_text(const Steadiness& all);
+
+/// What the fields of each row are read from.
+[[nodiscard]] std::vector<RowFacts> facts_of(const BenchResult& result);
+
+/// The results of a scene's rows, by device, under headings that name the hardware.
+[[nodiscard]] Table rate_table(const std::string& scene, const BenchResult& result);
+
+/// Where the time of all rows goes, in milliseconds, by scene and device.
+[[nodiscard]] Table time_table(const BenchResult& result);
+
+/// The rows' devices and their peak rates.
+[[nodiscard]] Table device_table(const std::vector<RowDevice>& devices);
+
+/// The keys of all columns of the three tables above.
+[[nodiscard]] std::vector<std::string> bench_columns();
+
+/// Every row with all its figures, flat.
+[[nodiscard]] Table flat_table(const BenchResult& result);
 
 } // namespace tetrace

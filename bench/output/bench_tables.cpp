@@ -1,4 +1,4 @@
-#include "bench/output/bench_tables.h"
+#include "bench/output/bench_report.h"
 
 #include <algorithm>
 #include <fmt/format.h>

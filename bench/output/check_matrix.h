@@ -28,4 +28,9 @@ namespace tetrace {
 /// {scene: {row: {device: {"cell": ..., "hit_hash": ...}}}}.
 [[nodiscard]] nlohmann::json matrix_json(const std::vector<RowRecord>& rows);
 
+/// Full details of the row's first ray that differs from openmp's and the first that the oracle finds wrong: pixel,
+/// view, hits, the tets of the walks on both sides, and the command that follows the ray. Empty if there is neither, or
+/// the row is without hits.
+[[nodiscard]] std::string differences_text(const RowRecord& row);
+
 } // namespace tetrace

@@ -1,6 +1,8 @@
 #pragma once
 
-#include "bench/output/row_facts.h"
+#include "bench/measuring/comparison.h"
+#include "bench/measuring/figures.h"
+#include "bench/measuring/row_devices.h"
 #include "bench/results/read_into.h"
 
 #include <functional>
@@ -8,6 +10,22 @@
 #include <type_traits>
 
 namespace tetrace {
+
+/// The sources of a row's fields: its record, and what is computed from it and from other rows. Refers to the record.
+struct RowFacts {
+    explicit RowFacts(const RowRecord& record) : row(&record), figures(figures_of(record)) {}
+
+    const RowRecord* row;
+    std::optional<Figures> figures;
+    // Set only by `bench`, which has all rows and devices.
+    std::optional<Comparison> comparison;
+    std::optional<Comparison> best_bvh; ///< with the fastest BVH of its arena
+    std::optional<PaidBuild> paid_build;
+    std::optional<double> ratio_to_single;
+    std::optional<CopyShares> copy_shares;
+    // Set only by `check`.
+    std::optional<std::string> conformity;
+};
 
 /// How a field is read from a part of a row, or from a member of that part. If it is a member, or has set(), a result's
 /// value can be written back into the part.

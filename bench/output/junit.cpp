@@ -2,7 +2,7 @@
 
 #include "bench/measuring/conformity.h"
 #include "bench/options/identity.h"
-#include "bench/output/check_differences.h"
+#include "bench/output/check_matrix.h"
 #include "bench/terminal/text.h"
 #include "core/base/hash.h"
 

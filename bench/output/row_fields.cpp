@@ -1,8 +1,7 @@
 #include "bench/output/row_fields.h"
 
 #include "bench/output/device_json.h"
-#include "bench/output/fields/comparison_fields.h"
-#include "bench/output/fields/field_parts.h"
+#include "bench/output/field_parts.h"
 #include "bench/rows/ray_json.h"
 #include "core/base/hash.h"
 #include "core/base/printable.h"

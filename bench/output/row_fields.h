@@ -78,4 +78,13 @@ inline constexpr const char* ratio_group = "ratio";
 /// A row's cells for those columns.
 [[nodiscard]] std::vector<Cell> cells_of(Place place, const RowFacts& facts);
 
+/// A row's speed compared with others: its reference under another API, the fastest BVH, Embree's single rays.
+[[nodiscard]] std::vector<RowField> comparison_fields();
+
+/// A row as results record it: those fields of row_fields() for which it has a value.
+[[nodiscard]] nlohmann::json row_json(const RowFacts& facts);
+
+/// A row's speed compared with its reference's. Precondition: facts.comparison.
+[[nodiscard]] nlohmann::json ratio_json(const RowFacts& facts);
+
 } // namespace tetrace

@@ -131,8 +131,8 @@ namespace {
 void examine_walks(SceneRun& run, const SeenImage& image, ImageRecord& record)
 {
     const std::uint32_t cap = job_of(image.row, image.view).max_steps;
-    record.lost_at_cap = static_cast<std::uint64_t>(std::ranges::count_if(
-        image.hits, [&](const Hit& hit) { return hit.face_id == LOST && hit.steps >= cap; }));
+    record.lost_at_cap = static_cast<std::uint64_t>(
+        std::ranges::count_if(image.hits, [&](const Hit& hit) { return hit.face_id == LOST && hit.steps >= cap; }));
     if (run.flat == nullptr || !is_cdt(image.row)) return;
     record.flawed = run.flat->walks(image.row, image.view, record.verdict.verdicts.flawed);
     record.any = run.flat->walks_anywhere(image.row, image.view);
@@ -144,9 +144,9 @@ void run_views(SceneRun& run, const Options& options, const Recording& shared)
 {
     if (run.scene == nullptr) return;
     const unsigned samples = run.build.timing ? options.samples : 0;
-    ViewRecorder recorder(
-        pointers_to(run.rows), run.images, run.verifier.get(), *run.scene, samples, options.sample_s, shared,
-        [&](const SeenImage& image, ImageRecord& record) { examine_walks(run, image, record); });
+    ViewRecorder recorder(pointers_to(run.rows), run.images, run.verifier.get(), *run.scene, samples, options.sample_s,
+                          shared,
+                          [&](const SeenImage& image, ImageRecord& record) { examine_walks(run, image, record); });
     const std::size_t views = run.scene->views().size(), restored = recorder.restore();
     if (restored < views) shared.budget->plan_views(run.rows, samples, options.sample_s, restored);
     recorder.run();

@@ -1,10 +1,10 @@
 #pragma once
 
+#include "bench/measuring/row_recorder.h"
 #include "bench/measuring/verify.h"
 #include "bench/reproduce/flat_tets.h"
+#include "bench/reproduce/kept_costs.h"
 #include "bench/reproduce/likeness.h"
-#include "bench/measuring/row_recorder.h"
-#include "bench/reproduce/setup_costs.h"
 
 #include <memory>
 #include <string>

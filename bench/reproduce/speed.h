@@ -1,8 +1,8 @@
 #pragma once
 
+#include "bench/measuring/row_recorder.h"
 #include "bench/reproduce/claims.h"
 #include "bench/reproduce/paper.h"
-#include "bench/measuring/row_recorder.h"
 
 #include <functional>
 #include <vector>

@@ -1,6 +1,6 @@
 #include "bench/rows/row_run.h"
 
-#include "bench/rows/device_abilities.h"
+#include "bench/rows/physical_device.h"
 #include "core/base/printable.h"
 #include "core/device/open_checks.h"
 #include "scenes/cache.h"

@@ -1,7 +1,8 @@
 #include "bench/rows/scene_work.h"
 
-#include "bench/rows/scene_arguments.h"
 #include "bench/terminal/progress.h"
+#include "bench/terminal/text.h"
+#include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "core/pack/pack_bvh.h"
 #include "core/rays/entering.h"
@@ -117,6 +118,65 @@ std::vector<std::string> missing_default_scenes(const Options& options)
 unsigned resolved_threads(const Options& options)
 {
     return options.threads != 0 ? options.threads : static_cast<unsigned>(omp_get_max_threads());
+}
+
+std::string scene_arguments(const SceneRequest& request, const Options& options)
+{
+    std::string text = "--scene " + shell_word(request.name);
+    const auto add = [&](const char* option, const std::string& value, bool is_default) {
+        if (!is_default) text += fmt::format(" {} {}", option, shell_word(value));
+    };
+    if (options.repair) text += " --repair";
+    const Options usual;
+    add("--domain", std::string(name_of(options.domains.front())), options.domains == usual.domains);
+    add("--tets", std::string(name_of(options.tets.front())), options.tets == usual.tets);
+    add("--effort", fmt::format("{}", options.effort), options.effort == usual.effort);
+    for (const std::uint32_t divisions : options.divisions)
+        add("--divisions", fmt::format("{}", divisions), false);
+    for (const std::string& switches : options.switches)
+        add("--switches", switches, false);
+    add("--resolution", fmt::format("{}", options.resolution), options.resolution == usual.resolution);
+    add("--optimise-time", fmt::format("{}", options.optimise_s), options.optimise_s == usual.optimise_s);
+    add("--camera-set", options.own_cameras ? options.own_cameras->file : camera_set_name(options),
+        !options.own_cameras && options.camera_set == usual.camera_set);
+    add("--size", fmt::format("{}x{}", options.width, options.height), false);
+    add("--tile", fmt::format("8x{}", options.tile_height), options.tile_height == 0);
+    add("--packet-lanes", fmt::format("{}", options.packet_lanes), options.packet_lanes == 0);
+    add("--buffer-limit", fmt::format("{}", options.buffer_limit), options.buffer_limit == 0);
+    return text;
+}
+
+namespace {
+
+ViewStarts locate_each(const Scene& scene, const std::vector<Float3>& origins)
+{
+    ViewStarts found;
+    const Stopwatch watch;
+    for (const Float3 origin : origins)
+        found.starts.push_back(find_start(scene, origin));
+    found.seconds = watch.seconds();
+    return found;
+}
+
+} // namespace
+
+ViewStarts find_starts(const Scene& scene, const std::vector<Float3>& origins)
+{
+    const ViewStarts exact = locate_each(scene, origins);
+    if (scene.domain.kind != DomainKind::wide || scene.tets.tets.empty()) return exact;
+    ViewStarts found;
+    MovingStart camera(scene, usual_move_limit(scene.domain));
+    const Stopwatch watch;
+    for (const Float3 origin : origins)
+        found.starts.push_back(camera.next(origin));
+    found.seconds = watch.seconds();
+    found.walk = StartWalk{camera.counts(), exact.seconds};
+    for (std::size_t view = 0; view < origins.size(); ++view)
+        if (found.starts[view] != exact.starts[view])
+            throw Error(ErrorKind::internal, fmt::format("walking to the camera of view {} ends in tet {}, where exact "
+                                                         "location finds tet {}",
+                                                         view, found.starts[view].tet, exact.starts[view].tet));
+    return found;
 }
 
 } // namespace tetrace

@@ -3,12 +3,13 @@
 #include "backends/embree/bvh_builder.h"
 #include "bench/options/options.h"
 #include "bench/rows/ray_store.h"
-#include "bench/rows/view_starts.h"
 #include "core/device/backend.h"
+#include "core/mesh/moving_start.h"
 #include "scenes/load.h"
 
 #include <map>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,23 @@ struct Packed {
     std::optional<double> bvh_build_s; ///< of a BVH, which is built once for all its layouts
     std::string fall_back;             ///< of a BVH: why it is not the heuristic's best tree; empty if it is
 };
+
+/// How the starts of a moving camera were found, compared with exact location.
+struct StartWalk {
+    MoveCounts counts;
+    double exact_s = 0; ///< seconds for locating the same positions exactly, each on its own
+};
+
+/// Where the rays of each view start.
+struct ViewStarts {
+    std::vector<Start> starts;
+    double seconds = 0;            ///< for finding them
+    std::optional<StartWalk> walk; ///< of the wide domain, where cameras are inside and move from view to view
+};
+
+/// Finds the starts of views, in their order. In the wide domain each is found from the one before, and compared with
+/// exact location. Throws Error{internal} if the two differ.
+[[nodiscard]] ViewStarts find_starts(const Scene& scene, const std::vector<Float3>& origins);
 
 /// A loaded scene with everything that its rows share: packed forms, views, start tets.
 class SceneWork {
@@ -102,5 +120,9 @@ private:
 /// Host threads used for all work: the number asked for, else OpenMP's (OMP_NUM_THREADS, else all that the process may
 /// use).
 [[nodiscard]] unsigned resolved_threads(const Options& options);
+
+/// The part of a command line that asks for the same scene and the same images, and for buffers and tiles alike, as a
+/// shell takes it: "--scene cubes --resolution 6 --size 256x256". Views are left out.
+[[nodiscard]] std::string scene_arguments(const SceneRequest& request, const Options& options);
 
 } // namespace tetrace

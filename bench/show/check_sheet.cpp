@@ -2,7 +2,6 @@
 
 #include "bench/measuring/conformity.h"
 #include "bench/output/bench_report.h"
-#include "bench/output/check_differences.h"
 #include "bench/output/check_matrix.h"
 #include "bench/output/report.h"
 

@@ -1,6 +1,6 @@
 #include "bench/show/show_report.h"
 
-#include "bench/output/bench_tables.h"
+#include "bench/output/bench_report.h"
 #include "bench/show/check_sheet.h"
 #include "bench/show/recorded_rows.h"
 #include "core/base/printable.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/output/bench_answer.h"
+#include "bench/output/bench_report.h"
 #include "bench/results/result_file.h"
 #include "bench/terminal/sheet.h"
 

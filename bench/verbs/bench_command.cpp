@@ -1,7 +1,7 @@
 #include "bench/measuring/run_journal.h"
 #include "bench/measuring/scene_records.h"
 #include "bench/merging/shard_results.h"
-#include "bench/output/bench_tables.h"
+#include "bench/output/bench_report.h"
 #include "bench/terminal/interrupts.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
@@ -36,9 +36,10 @@ void check_anonymous(const Options& options, const BenchmarkFlags& flags)
 void check_resume(const Options& options, const BenchmarkFlags& flags)
 {
     if (options.resume && (flags.format || !flags.out.empty()))
-        throw Error(ErrorKind::usage, fmt::format("--resume: {} would lack the samples that were taken before; leave it "
-                                                  "out, --out has all of them",
-                                                  flags.format ? "--benchmark_format" : "--benchmark_out"));
+        throw Error(ErrorKind::usage,
+                    fmt::format("--resume: {} would lack the samples that were taken before; leave it "
+                                "out, --out has all of them",
+                                flags.format ? "--benchmark_format" : "--benchmark_out"));
 }
 
 } // namespace

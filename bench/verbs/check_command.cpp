@@ -7,7 +7,7 @@
 #include "bench/output/difference_pictures.h"
 #include "bench/output/junit.h"
 #include "bench/output/report.h"
-#include "bench/output/row_json.h"
+#include "bench/output/row_fields.h"
 #include "bench/show/check_sheet.h"
 #include "bench/terminal/interrupts.h"
 #include "bench/terminal/progress.h"
@@ -99,12 +99,11 @@ int check(const Options& options, Checked& checked)
     const auto journal = open_journal(options, run_head(options, keys));
     if (journal != nullptr) say_how_to_go_on(options);
     Budget budget(options.budget_s);
-    SceneRows run = open_and_verify(
-        keys, options,
-        [&](const SeenImage& image) {
-            if (checked.pictures != nullptr) checked.pictures->see(image);
-        },
-        {journal.get(), nullptr, nullptr, &budget});
+    SceneRows run = open_and_verify(keys, options,
+                                    [&](const SeenImage& image) {
+                                        if (checked.pictures != nullptr) checked.pictures->see(image);
+                                    },
+                                    {journal.get(), nullptr, nullptr, &budget});
     for (RowRun& row : run.rows)
         note_walks(row);
     checked.rows = records_of(run.rows);

@@ -1,6 +1,6 @@
 #include "bench/measuring/run_journal.h"
+#include "bench/reproduce/kept_costs.h"
 #include "bench/reproduce/tables/pictures.h"
-#include "bench/reproduce/yardsticks.h"
 #include "bench/rivals/rival_run.h"
 #include "bench/rivals/rival_tables.h"
 #include "bench/terminal/interrupts.h"
@@ -79,8 +79,8 @@ void check_entries(const Journal& journal, const std::vector<SceneBuild>& builds
 /// Data kept in files next to the result's; null without a result file.
 struct Keeping {
     Keeping(const Options& options, const std::vector<SceneBuild>& builds)
-        : journal(open_journal(options, journal_head(options, builds))), yardsticks(journal.get()), costs(journal.get()),
-          watch(watch_of(host_pulse(resolved_threads(options)), journal.get())),
+        : journal(open_journal(options, journal_head(options, builds))), yardsticks(journal.get()),
+          costs(journal.get()), watch(watch_of(host_pulse(resolved_threads(options)), journal.get())),
           pictures(options.out ? std::make_unique<ResultPictures>(*options.out) : nullptr)
     {
         if (journal == nullptr) return;

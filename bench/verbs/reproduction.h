@@ -1,13 +1,13 @@
 #pragma once
 
-#include "bench/output/bench_answer.h"
 #include "bench/output/bench_report.h"
 #include "bench/output/report.h"
 #include "bench/reproduce/scene_run.h"
 #include "bench/reproduce/search_run.h"
 #include "bench/reproduce/tables/paper_table.h"
 #include "bench/reproduce/tables/tables.h"
-#include "bench/verbs/reproduce_builds.h"
+
+#include <vector>
 
 namespace tetrace {
 
@@ -50,5 +50,15 @@ void require_any_answer(const Reproduction& all);
 
 /// The exit code for what rows came to.
 [[nodiscard]] int rows_exit_code(const Reproduction& all);
+
+/// Whether `reproduce` is asked for the table or figure.
+[[nodiscard]] bool wants(const Options& options, PaperTarget target);
+/// Whether any of those asked for is of the scenes that --scene names.
+[[nodiscard]] bool wants_scenes(const Options& options);
+
+/// The builds that the requested tables need: the scenes as the options say, those of the paper also as near to its
+/// counts as known, and the same with tets for rays. A scene without those that
+/// are wanted has ours.
+[[nodiscard]] std::vector<SceneBuild> scene_builds(const Options& options);
 
 } // namespace tetrace

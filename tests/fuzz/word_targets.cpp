@@ -1,10 +1,10 @@
 // Options, results, journals, cameras, pictures and the messages of drivers' processes.
+#include "bench/measuring/image_record.h"
+#include "bench/measuring/journal.h"
 #include "bench/options/benchmark_flags.h"
 #include "bench/options/camera_file.h"
 #include "bench/options/options.h"
 #include "bench/report/png.h"
-#include "bench/measuring/image_record.h"
-#include "bench/measuring/journal.h"
 #include "bench/results/result_file.h"
 #include "bench/results/result_text.h"
 #include "core/isolation/messages.h"

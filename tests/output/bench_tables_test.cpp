@@ -1,7 +1,6 @@
-#include "bench/output/bench_tables.h"
 
-#include "bench/output/bench_answer.h"
-#include "bench/output/row_json.h"
+#include "bench/output/bench_report.h"
+#include "bench/output/row_fields.h"
 #include "bench/terminal/text.h"
 #include "tests/support/fake_backend.h"
 #include "tests/support/temporary_folder.h"

@@ -1,7 +1,6 @@
 #include "bench/show/recorded_rows.h"
 
 #include "bench/output/row_fields.h"
-#include "bench/output/row_json.h"
 #include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>

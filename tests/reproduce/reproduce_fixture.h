@@ -13,8 +13,8 @@
 
 namespace tetrace::test {
 
-/// The program's reproduce, or another verb that can be resumed, in a folder of its own, on a scene that it makes itself
-/// unless another is named.
+/// The program's reproduce, or another verb that can be resumed, in a folder of its own, on a scene that it makes
+/// itself unless another is named.
 class ReproduceTest : public testing::Test {
 protected:
     /// Starts it; its process. A sample is a pass unless a time is given. killed_at: the line of its journal after

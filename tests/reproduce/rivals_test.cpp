@@ -1,4 +1,4 @@
-#include "bench/rivals/pay_off.h"
+#include "bench/rivals/judged_claim.h"
 #include "bench/rivals/rival_run.h"
 #include "bench/rivals/rival_tables.h"
 #include "tests/support/fake_backend.h"

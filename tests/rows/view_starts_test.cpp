@@ -1,4 +1,4 @@
-#include "bench/rows/view_starts.h"
+#include "bench/rows/scene_work.h"
 
 #include "core/base/error.h"
 #include "core/base/exact.h"

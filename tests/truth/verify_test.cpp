@@ -2,7 +2,7 @@
 
 #include "bench/measuring/conformity.h"
 #include "bench/measuring/ray_walks.h"
-#include "bench/output/check_differences.h"
+#include "bench/output/check_matrix.h"
 #include "bench/output/difference_pictures.h"
 #include "bench/rows/ray_store.h"
 #include "bench/terminal/interrupts.h"

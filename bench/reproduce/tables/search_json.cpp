@@ -1,7 +1,7 @@
 #include "bench/reproduce/tables/tables.h"
 
 #include "bench/measuring/figures.h"
-#include "bench/output/row_json.h"
+#include "bench/output/row_fields.h"
 #include "bench/reproduce/speed.h"
 
 namespace tetrace {

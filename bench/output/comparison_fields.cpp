@@ -1,6 +1,6 @@
-#include "bench/output/fields/comparison_fields.h"
+#include "bench/output/row_fields.h"
 
-#include "bench/output/fields/field_parts.h"
+#include "bench/output/field_parts.h"
 #include "bench/statistics/median_ratio.h"
 #include "bench/terminal/text.h"
 
