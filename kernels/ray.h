@@ -13,7 +13,7 @@ STRUCT(TraceParams)
     uint start_tet; // tet that holds the origin, or NO_TET: rays enter the domain from outside
     uint max_steps;
     uint any_hit;  // != 0: any hit will do, so the first one found is returned
-    uint start_v0; // vertices of start_tet, for tets that do not store their vertices (walk_compact.h)
+    uint start_v0; // vertices of start_tet, for tets that do not store their vertices (structure_compact.h)
     uint start_v1;
     uint start_v2;
     uint start_v3;

@@ -4,10 +4,33 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace tetrace {
+
+/// A lock that one process, and one of its threads, holds at a time. The system releases it when the process ends. The
+/// lock's file is removed with the lock.
+class FileLock {
+public:
+    /// Empty where another process or thread has it. Throws Error{invalid_input} naming the path and the system's
+    /// reason.
+    [[nodiscard]] static std::optional<FileLock> try_take(const std::filesystem::path& path);
+
+    /// Whether another process, or a FileLock of this one, has it now.
+    [[nodiscard]] static bool is_held(const std::filesystem::path& path);
+
+    FileLock(FileLock&& other) noexcept;
+    FileLock& operator=(FileLock&&) = delete;
+    ~FileLock();
+
+private:
+    FileLock(std::filesystem::path path, int file);
+
+    std::filesystem::path path_;
+    int file_;
+};
 
 /// $XDG_CACHE_HOME/tetrace (an absolute path, as the XDG specification demands), else $HOME/.cache/tetrace; made when
 /// first written to. Throws Error{missing} if neither variable names a folder.

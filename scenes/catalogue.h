@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/mesh/scene.h"
-#include "core/rays/aim.h"
+#include "core/rays/camera.h"
 
 #include <filesystem>
 #include <optional>

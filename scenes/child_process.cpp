@@ -1,7 +1,7 @@
 #include "scenes/child_process.h"
 
-#include "core/base/descriptor.h"
 #include "core/base/error.h"
+#include "core/base/files.h"
 #include "core/base/stopwatch.h"
 
 #include <array>

@@ -1,12 +1,11 @@
 #include "scenes/load.h"
 
-#include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/files.h"
 #include "core/base/hash.h"
 #include "core/base/stopwatch.h"
 #include "scenes/build_scene.h"
 #include "scenes/cache.h"
-#include "scenes/file_lock.h"
 #include "scenes/mesh_files.h"
 #include "scenes/procedural.h"
 #include "scenes/scene_file.h"

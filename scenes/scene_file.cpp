@@ -3,11 +3,11 @@
 // Every byte is under a checksum, and header and table state each size twice: no allocation rests on one number.
 #include "scenes/scene_file.h"
 
-#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/exact.h"
+#include "core/base/files.h"
 #include "core/base/hash.h"
-#include "core/mesh/sides.h"
+#include "core/mesh/entry_grid.h"
 #include "scenes/scene_information.h"
 
 #include <array>

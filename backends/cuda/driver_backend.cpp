@@ -1,14 +1,101 @@
 #include "backends/cuda/driver_backend.h"
 
-#include "backends/cuda/files.h"
+#include "backends/cuda/device.h"
+#include "backends/cuda/program.h"
 #include "backends/cuda/session.h"
-#include "backends/cuda/yardstick.h"
 #include "core/base/error.h"
-#include "core/device/open_checks.h"
+#include "core/device/backend.h"
+#include "core/device/session.h"
+#include "core/device/yardstick.h"
 
 namespace tetrace::cuda {
 
 namespace {
+
+constexpr const char* ptx_target = "compute_75"; // the oldest that CUDA 13 knows; any later GPU's driver takes it
+
+std::string joined(const std::vector<std::string>& words)
+{
+    std::string text;
+    for (const std::string& word : words)
+        text += " " + word;
+    return text;
+}
+
+/// Throws Error{missing} if NVRTC is not here, and as Nvrtc::compile().
+std::string ptx_of(const Programs& programs, const EmbeddedKernel& source, const ProgramId& id)
+{
+    if (!programs.has_nvrtc())
+        throw Error(ErrorKind::missing, programs.nvrtc == nullptr ? "NVRTC is not used" : programs.nvrtc().reason());
+    const auto options = compiler_options(id);
+    const auto code = programs.nvrtc().compile(source.text().data(), id.name(), ptx_target, options);
+    std::string text(code.begin(), code.end());
+    while (!text.empty() && text.back() == '\0')
+        text.pop_back();
+    return text;
+}
+
+/// A kernel's source with its includes resolved; its PTX, if NVRTC is here; and nvcc's code, if this build has that.
+/// Empty if there is no such kernel.
+std::vector<KernelFile> files_of(const Programs& programs, const KernelId& kernel)
+{
+    const ProgramId id = program_of(kernel);
+    const EmbeddedKernel* const source = find_kernel(programs.sources, id.source);
+    if (source == nullptr) return {};
+    const std::string ptx = id.name() + ".ptx", text = id.source + ".cu";
+    const std::string command = "nvcc --ptx -std=c++17 -arch=" + std::string(ptx_target) +
+                                joined(compiler_options(id)) + " -o " + ptx + " " + text;
+    std::vector<KernelFile> files = {
+        {text, "CUDA C++ with its includes resolved, as NVRTC and nvcc get it", command, std::string(source->text())}};
+    try {
+        files.push_back({ptx, "PTX, by NVRTC", "ptxas -v -arch=sm_75 -o " + id.name() + ".cubin " + ptx,
+                         ptx_of(programs, *source, id)});
+    } catch (const Error& error) {
+        files.front().what += "; without PTX, because " + std::string(error.what());
+    }
+    if (const EmbeddedKernel* const code = find_kernel(programs.code, id.name()))
+        files.push_back({id.name() + ".fatbin", "machine code, by " + programs.compiler + ", as the driver gets it",
+                         "cuobjdump --dump-sass " + id.name() + ".fatbin", std::string(code->text())});
+    return files;
+}
+
+Yardstick measured_copies(OpenDevice& device)
+{
+    std::size_t free = 0, total = 0;
+    device.context.check(device.driver().memory_info(&free, &total), "asking how much memory is free");
+    const std::size_t bytes = copied_bytes(free, 0);
+    const Memory from(device.context, bytes, "the copy's source"), to(device.context, bytes, "the copy's target");
+    EventTimer timer(device.context);
+    return measure_copies(bytes, [&](std::uint64_t each, unsigned times) {
+        timer.start(device.stream.get());
+        for (unsigned time = 0; time < times; ++time)
+            device.context.check(
+                device.driver().copy_on_device(to.address(), from.address(), each, device.stream.get()),
+                "copying memory to memory");
+        timer.stop(device.stream.get());
+        return timer.seconds();
+    });
+}
+
+double launch_s(OpenDevice& device, FunctionHandle probe)
+{
+    Address none = 0;
+    std::uint32_t count = 0;
+    void* parameters[] = {&none, &none, &count};
+    return median_seconds([&] {
+        device.launch(probe, 1, 1, parameters);
+        device.synchronize();
+    });
+}
+
+/// Copies memory to memory, up to 512 MiB and for some milliseconds at most, and takes the best of a few; then launches
+/// a kernel that has nothing to do. probe: of the self-test's module.
+Yardstick measure_device(OpenDevice& device, FunctionHandle probe)
+{
+    Yardstick measured = measured_copies(device);
+    measured.launch_s = launch_s(device, probe);
+    return measured;
+}
 
 constexpr unsigned probe_block_threads = 64;
 
@@ -102,7 +189,7 @@ std::vector<std::uint32_t> DriverBackend::run_defect(std::size_t device, std::st
 
 std::vector<KernelFile> DriverBackend::kernel_files(const KernelId& kernel) const
 {
-    return cuda::kernel_files(platform_.programs(), kernel);
+    return files_of(platform_.programs(), kernel);
 }
 
 std::optional<Yardstick> DriverBackend::yardstick(std::size_t device, const SessionOptions& options)

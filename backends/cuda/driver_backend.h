@@ -1,8 +1,8 @@
 #pragma once
 
 #include "backends/cuda/program.h"
-#include "core/debugging/defects.h"
 #include "core/device/backend.h"
+#include "core/device/defects.h"
 
 #include <functional>
 #include <mutex>

@@ -3,8 +3,7 @@
 #include "backends/embree/accelerator.h"
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
-#include "core/bvh/balanced_bvh.h"
-#include "core/bvh/triangle_split.h"
+#include "core/bvh/bvh.h"
 
 #include <cfenv>
 #include <limits>

@@ -1,15 +1,192 @@
 #include "backends/embree/session.h"
 
-#include "backends/embree/batch.h"
-#include "backends/embree/given_rays.h"
+#include "backends/embree/accelerator.h"
+#include "backends/embree/queries.h"
+#include "core/device/backend.h"
+#include "core/rays/hit.h"
+#include "core/rays/ray_set.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 namespace tetrace::embree {
+
 namespace {
+
+/// The hit of a query for the nearest triangle.
+[[nodiscard]] inline Hit nearest_hit(unsigned primitive, float t, float u, float v)
+{
+    if (primitive == RTC_INVALID_GEOMETRY_ID) return {NO_HIT, NO_TET, 0, 0, 0, 0};
+    return {primitive, NO_TET, t, u, v, 0};
+}
+
+/// The hit of an occlusion query, which sets the end of an occluded ray to -inf.
+[[nodiscard]] inline Hit any_hit(float end)
+{
+    return {end < 0 ? SOME_HIT : NO_HIT, NO_TET, 0, 0, 0, 0};
+}
+
+template <unsigned width>
+struct PacketOf;
+
+template <>
+struct PacketOf<8> {
+    using Type = RTCRayHit8;
+};
+
+template <>
+struct PacketOf<16> {
+    using Type = RTCRayHit16;
+};
+
+/// Packets of `width` rays for one call of Embree: one packet, or a stream of them.
+template <unsigned width, unsigned packets>
+class Batch {
+public:
+    void set(unsigned packet, unsigned lane, Float3 origin, Float3 direction, float end)
+    {
+        auto& [in, out] = packets_[packet];
+        in.org_x[lane] = origin.x;
+        in.org_y[lane] = origin.y;
+        in.org_z[lane] = origin.z;
+        in.dir_x[lane] = direction.x;
+        in.dir_y[lane] = direction.y;
+        in.dir_z[lane] = direction.z;
+        in.tnear[lane] = 0;
+        in.tfar[lane] = end;
+        in.time[lane] = 0;
+        in.mask[lane] = ~0u;
+        in.id[lane] = 0;
+        in.flags[lane] = 0;
+        out.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+        out.primID[lane] = RTC_INVALID_GEOMETRY_ID;
+        out.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+        if constexpr (packets == 1) valid_[lane] = -1;
+    }
+
+    /// Leaves a ray out.
+    void clear(unsigned packet, unsigned lane)
+    {
+        set(packet, lane, {}, {1, 0, 0}, -1);
+        if constexpr (packets == 1) valid_[lane] = 0;
+    }
+
+    void trace(RTCScene scene, bool any_hit, Coherence coherence)
+    {
+        if constexpr (packets == 1)
+            any_hit ? occlude(scene, valid_, packets_[0].ray, coherence)
+                    : intersect(scene, valid_, packets_[0], coherence);
+        else
+            any_hit ? occlude_stream(scene, std::span(packets_), coherence)
+                    : intersect_stream(scene, std::span(packets_), coherence);
+    }
+
+    [[nodiscard]] Hit hit(unsigned packet, unsigned lane, bool any_hit) const
+    {
+        const auto& [in, out] = packets_[packet];
+        return any_hit ? embree::any_hit(in.tfar[lane])
+                       : nearest_hit(out.primID[lane], in.tfar[lane], out.u[lane], out.v[lane]);
+    }
+
+private:
+    alignas(64) typename PacketOf<width>::Type packets_[packets];
+    alignas(64) int valid_[width];
+};
+
+/// Traces given rays into hits, in order, as many at a time as the method says. For jobs that ask for any hit it uses
+/// Embree's occlusion query, which does not say what was hit: SOME_HIT. rays: GIVEN_RAY_QUADS per ray, as for
+/// Session::set_rays. hits: one per ray.
+void trace_given(const Accelerator& accelerator, Method method, const TraceJob& job, std::span<const Quad> rays,
+                 std::span<Hit> hits, unsigned threads);
+
+/// Rays of a stream. Occlusion queries sort a stream by octants, so more rays are better: with 64, shadow and ao rays
+/// have 0.92 to 0.99 of the rate that they have with 256; diffuse rays 0.98 to 1.02 (Embree 3.13, AVX-512).
+constexpr unsigned stream_rays = 256;
+
+/// Given rays share no path, whatever their order (docs/embree.md).
+constexpr Coherence coherence_of_given = Coherence::incoherent;
+
+Float3 vector_of(const Quad& quad)
+{
+    return {std::bit_cast<float>(quad.x), std::bit_cast<float>(quad.y), std::bit_cast<float>(quad.z)};
+}
+
+/// Quads as two lists (kernels/layouts/layout.h), and what each ray asks for.
+struct Rays {
+    std::span<const Quad> directions, origins;
+    bool any_hit;
+};
+
+void trace_single(const Accelerator& accelerator, const Rays& rays, std::size_t number, std::span<tetrace::Hit> hits)
+{
+    const Quad& origin = rays.origins[number];
+    RTCRayHit query =
+        query_of(vector_of(origin), vector_of(rays.directions[number]), 0, std::bit_cast<float>(origin.w));
+    if (rays.any_hit) {
+        occlude(accelerator.scene(), query.ray, coherence_of_given);
+        hits[number] = any_hit(query.ray.tfar);
+    } else {
+        intersect(accelerator.scene(), query, coherence_of_given);
+        hits[number] = nearest_hit(query.hit.primID, query.ray.tfar, query.hit.u, query.hit.v);
+    }
+}
+
+template <unsigned width, unsigned packets>
+void trace_batch(const Accelerator& accelerator, const Rays& rays, std::size_t first, std::span<tetrace::Hit> hits)
+{
+    Batch<width, packets> batch;
+    for (unsigned packet = 0; packet < packets; ++packet)
+        for (unsigned lane = 0; lane < width; ++lane) {
+            const std::size_t number = first + packet * width + lane;
+            if (number >= hits.size()) {
+                batch.clear(packet, lane);
+                continue;
+            }
+            const Quad& origin = rays.origins[number];
+            batch.set(packet, lane, vector_of(origin), vector_of(rays.directions[number]),
+                      std::bit_cast<float>(origin.w));
+        }
+    batch.trace(accelerator.scene(), rays.any_hit, coherence_of_given);
+    for (unsigned packet = 0; packet < packets; ++packet)
+        for (unsigned lane = 0; lane < width; ++lane)
+            if (const std::size_t number = first + packet * width + lane; number < hits.size())
+                hits[number] = batch.hit(packet, lane, rays.any_hit);
+}
+
+/// A call of Embree, and how many rays it traces.
+struct Call {
+    std::size_t rays;
+    void (*trace)(const Accelerator&, const Rays&, std::size_t first, std::span<tetrace::Hit> hits);
+};
+
+template <unsigned width, unsigned packets>
+constexpr Call call_with = {width* packets, trace_batch<width, packets>};
+
+Call call_of(Method method)
+{
+    switch (method) {
+    case Method::packet8: return call_with<8, 1>;
+    case Method::packet16: return call_with<16, 1>;
+    case Method::stream: return call_with<8, stream_rays / 8>;
+    default: return {1, trace_single};
+    }
+}
+
+void trace_given(const Accelerator& accelerator, Method method, const TraceJob& job, std::span<const Quad> quads,
+                 std::span<tetrace::Hit> hits, unsigned threads)
+{
+    const std::size_t count = hits.size();
+    const Rays rays{quads.first(count), quads.subspan(count, count), job.any_hit};
+    const Call call = call_of(method);
+#pragma omp parallel for schedule(dynamic, 1024 / call.rays) num_threads(static_cast <int>(threads))
+    for (std::size_t ray = 0; ray < count; ray += call.rays)
+        call.trace(accelerator, rays, ray, hits);
+}
+
 #include "kernels/rays_cpp.h"
 
 #include "kernels/language/params_cpp.h"

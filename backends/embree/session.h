@@ -1,7 +1,7 @@
 #pragma once
 
 #include "backends/embree/accelerator.h"
-#include "core/device/host_session.h"
+#include "core/device/host.h"
 
 #include <memory>
 #include <vector>

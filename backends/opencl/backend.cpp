@@ -1,19 +1,37 @@
 #include "backends/opencl/backend.h"
 
-#include "backends/opencl/defects.h"
-#include "backends/opencl/files.h"
 #include "backends/opencl/kernels.h"
 #include "backends/opencl/probe.h"
+#include "backends/opencl/program.h"
 #include "backends/opencl/session.h"
-#include "backends/opencl/yardstick.h"
-#include "core/debugging/defects.h"
+#include "core/device/defects.h"
 #include "core/device/device_facts.h"
-#include "core/device/open_checks.h"
+#include "core/device/session.h"
 
 #include <mutex>
 
 namespace tetrace {
+
 namespace {
+
+/// A kernel's source with its includes resolved; empty if there is none.
+std::vector<KernelFile> files_of(const KernelId& kernel)
+{
+    const std::string name = opencl::source_name(kernel);
+    const EmbeddedKernel* const source = find_kernel(opencl::embedded_kernels(), name);
+    if (source == nullptr || name == "probe") return {};
+    const std::string options = "-cl-std=CL1.2 -DGROUP_ITEMS=64" + std::string(opencl::math_options(kernel.math));
+    std::string what =
+        "OpenCL C with its includes resolved, as the driver's compiler gets it; the kernel is run_image. "
+        "clBuildProgram gets '" +
+        options + "', and also: ";
+    if (kernel.structure == Structure::cdt) what += "-DSTARTS_OUTSIDE for rays from outside; ";
+    what += "-DRAYS for given rays; -DSEARCH for single exit searches; -DPERSISTENT for that schedule; "
+            "-cl-denorms-are-zero on processors; -cl-fp32-correctly-rounded-divide-sqrt where the device offers it";
+    return {{name + ".cl", what,
+             "clang -x cl -Xclang -finclude-default-header -fsyntax-only " + options + " " + name + ".cl",
+             std::string(source->text())}};
+}
 
 class OpenclBackend : public Backend {
 public:
@@ -60,7 +78,7 @@ public:
 
     [[nodiscard]] std::vector<KernelFile> kernel_files(const KernelId& kernel) const override
     {
-        return opencl::kernel_files(kernel);
+        return files_of(kernel);
     }
 
 private:

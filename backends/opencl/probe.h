@@ -5,11 +5,20 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace tetrace::opencl {
 
 /// Runs kernels/probe.h, one item and one result per quad. Throws Error if the device fails.
 [[nodiscard]] std::vector<std::uint32_t> run_probe(Context& context, MathMode math, std::span<const Quad> operations);
+
+/// Compiles and runs a reduced kernel (core/device/defects.h). Throws Error if the device fails.
+[[nodiscard]] std::vector<std::uint32_t> run_defect(Context& context, std::string_view name);
+
+/// Copy bandwidth of the device's memory and caches by clEnqueueCopyBuffer and its events (core/device/yardstick.h),
+/// buffers of 512 MiB at most, less where one may not be that large, bytes read and written; and the median time of an
+/// empty kernel from its enqueueing to the end of clFinish on the host's clock. Throws Error if the device fails.
+[[nodiscard]] Yardstick measure_device(Context& context, std::uint64_t max_buffer_bytes);
 
 } // namespace tetrace::opencl

@@ -1,7 +1,7 @@
 #include "backends/opencl/session.h"
 
 #include "core/base/stopwatch.h"
-#include "core/device/open_checks.h"
+#include "core/device/session.h"
 
 #include <algorithm>
 #include <array>

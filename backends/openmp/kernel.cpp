@@ -2,7 +2,7 @@
 // KERNEL_STRUCTURE_HEADER and the like, and KERNEL_NAME. BVH kernels are compiled once more with COUNTS_VISITS, to
 // count and never to be timed.
 #include "backends/openmp/kernels.h"
-#include "core/device/host_session.h"
+#include "core/device/host.h"
 #include "core/device/launch.h"
 
 #include <bit>

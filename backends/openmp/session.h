@@ -1,7 +1,7 @@
 #pragma once
 
 #include "backends/openmp/kernels.h"
-#include "core/device/host_session.h"
+#include "core/device/host.h"
 
 namespace tetrace::openmp {
 

@@ -1,15 +1,12 @@
 #include "backends/vulkan/backend.h"
 
-#include "backends/vulkan/code/executable.h"
-#include "backends/vulkan/code/files.h"
-#include "backends/vulkan/defects/run_defect.h"
+#include "backends/vulkan/code.h"
 #include "backends/vulkan/kernels.h"
 #include "backends/vulkan/probe.h"
 #include "backends/vulkan/session.h"
-#include "backends/vulkan/yardstick.h"
-#include "core/debugging/defects.h"
+#include "core/device/defects.h"
 #include "core/device/device_facts.h"
-#include "core/device/open_checks.h"
+#include "core/device/session.h"
 
 #include <mutex>
 

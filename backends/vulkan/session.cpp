@@ -2,7 +2,7 @@
 
 #include "backends/vulkan/kernels.h"
 #include "core/base/stopwatch.h"
-#include "core/device/open_checks.h"
+#include "core/device/session.h"
 
 #include <algorithm>
 #include <array>

@@ -1,13 +1,43 @@
 #pragma once
 
-#include "bench/debugging/defect_run.h"
+#include "bench/options/options.h"
 #include "bench/output/report.h"
 #include "bench/results/result_value.h"
+#include "core/base/error.h"
+#include "core/device/backend.h"
+#include "core/device/defects.h"
 
 #include <string>
 #include <vector>
 
 namespace tetrace {
+
+/// What a driver showed of a defect. skipped: it did not run, because no device is usable.
+enum class DefectSight { not_seen, seen, skipped, error };
+template <>
+inline constexpr auto enum_names<DefectSight> = names_up_to<DefectSight::error>("not seen", "seen", "skipped", "error");
+
+/// A reduced kernel on a device.
+struct DefectRun {
+    std::string backend;
+    std::size_t device_index = 0; ///< in the backend's devices()
+    Device device;
+    const Defect* defect = nullptr;
+    DefectSight sight = DefectSight::not_seen;
+    std::vector<std::uint32_t> wrong;     ///< items with another word than the expected one
+    std::uint32_t first_word = 0;         ///< what the first of them returned
+    std::string reason;                   ///< of skipped and error
+    ErrorKind kind = ErrorKind::internal; ///< of error
+    double seconds = 0;                   ///< compiling included
+};
+
+/// Runs every reduced kernel on the devices that the options keep, device after device, in the backends that have them.
+/// A device that fails is an error of its run. Throws as select_rows() does.
+[[nodiscard]] std::vector<DefectRun> run_defects(const Options& options,
+                                                 const std::vector<Backend*>& backends = all_backends());
+
+/// 1 if a defect was seen; else the code of the first error, 3 if no device ran one, else 0.
+[[nodiscard]] int exit_code(const std::vector<DefectRun>& runs);
 
 /// Defects for people, and every run flat.
 struct ShownDefects {

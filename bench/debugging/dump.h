@@ -1,11 +1,17 @@
 #pragma once
 
+#include "bench/options/options.h"
 #include "bench/output/report.h"
 #include "core/device/backend.h"
 
 #include <vector>
 
 namespace tetrace {
+
+/// The one kernel of --method, --layout and --math, for primary rays in schedule tiles: the first of those that fit
+/// that has rows by default, else the first. Throws Error{usage} if several methods, layouts or modes are named, or
+/// no kernel fits.
+[[nodiscard]] KernelId one_kernel(const Options& options);
 
 /// The files of one_kernel() that the backend of --backend has, as its driver gets them.
 /// Throws Error{usage} if the backend has none, with the reason.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bench/debugging/ray_steps.h"
+#include "bench/output/report.h"
 
 #include <memory>
 #include <vector>
@@ -27,5 +28,8 @@ struct TraceRun {
 /// Whether a row's ray is other than openmp's where it must be the same: in its steps, or its hit by more than its
 /// device's self-test allows.
 [[nodiscard]] bool differs(const RayOnDevice& ray, const RayOnDevice& reference);
+
+/// What shown_trace() makes of the ray, and the result that `show` makes the same of.
+[[nodiscard]] Report trace_report(const TraceRun& run, const Options& options);
 
 } // namespace tetrace

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "bench/inspection/entry_point.h"
 #include "bench/inspection/machine_code.h"
+#include "bench/options/options.h"
+#include "core/pack/kernel_id.h"
 
 #include <cstdint>
 #include <functional>
@@ -10,6 +11,42 @@
 #include <vector>
 
 namespace tetrace {
+
+/// Whose compiler is asked: Mesa's RADV on null hardware, or nvcc with ptxas.
+enum class Maker { amd, nvidia };
+
+/// A GPU that kernels are compiled for. It need not be here.
+struct Target {
+    std::string name; ///< "gfx1100", "navi21", "sm_90"
+    Maker maker = Maker::amd;
+};
+
+/// "sm_" and a number is NVIDIA's; other lower-case letters and digits are AMD's.
+/// Throws Error{usage} naming the option for anything else.
+[[nodiscard]] Target parse_target(const std::string& option, const std::string& text);
+
+/// The targets of those names, in their order and each once; without names, those that represent the generations.
+[[nodiscard]] std::vector<Target> targets_of(const std::vector<std::string>& names);
+
+/// The names of an AMD target that drivers may know, the user's first: Mesa 22.3 knows gfx906 as "vega20" only.
+[[nodiscard]] std::vector<std::string> family_names(const std::string& target);
+
+/// An entry point of a kernel. The kernel's task and schedule are the entry's.
+struct EntryPoint {
+    KernelId kernel;
+    Entry entry = Entry::outside;
+};
+
+/// Every entry point of our kernels that the maker's GPUs get, in the kernels' order. AMD's have no schedule
+/// persistent: Vulkan has no such kernels.
+[[nodiscard]] std::vector<EntryPoint> all_entry_points(Maker maker);
+
+/// Whether --structure, --method, --layout, --schedule, --math and --entry keep it. Defaults: as for rows, and math
+/// mode exact.
+[[nodiscard]] bool wants(const Options& options, const EntryPoint& point);
+
+/// "outside", "rays", "inside persistent".
+[[nodiscard]] std::string name_of(const EntryPoint& point);
 
 /// Whether a program was compiled.
 enum class InspectedStatus { ok, skipped, error };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bench/inspection/inspected.h"
+#include "bench/output/report.h"
 #include "core/base/progress.h"
 
 namespace tetrace {
@@ -22,5 +23,9 @@ void require_asked(const Inspection& inspection, const std::vector<std::string>&
 
 /// Whether a program of exact mode has a fused operation where signs are decided.
 [[nodiscard]] bool decides_fused(const Inspected& row);
+
+/// The programs as a table, in all its forms, with a line for each target that could not be asked and for each fused
+/// operation that exact mode forbids. JSON: results/README.md.
+[[nodiscard]] Report inspection_report(const Inspection& inspection, const Options& options);
 
 } // namespace tetrace

@@ -2,8 +2,8 @@
 
 #include "bench/inspection/work_folder.h"
 #include "core/base/error.h"
+#include "core/base/files.h"
 #include "core/base/printable.h"
-#include "core/base/whole_file.h"
 #include "core/device/backend.h"
 #include "scenes/child_process.h"
 

@@ -1,7 +1,7 @@
 // What Linux's amdgpu driver shows of a GPU in files, below /sys/bus/pci/devices/<address>: hwmon, pp_dpm_* and
 // gpu_metrics (the kernel's documentation, gpu/amdgpu/thermal.rst, and its header kgd_pp_interface.h).
 #include "bench/measuring/gpu_monitor.h"
-#include "core/base/file_bytes.h"
+#include "core/base/files.h"
 
 #include <algorithm>
 #include <charconv>

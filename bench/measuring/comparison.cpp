@@ -3,7 +3,7 @@
 #include "bench/measuring/figures.h"
 #include "bench/rows/physical_device.h"
 #include "bench/statistics/break_even.h"
-#include "bench/statistics/median_ratio.h"
+#include "bench/statistics/rank_interval.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 
 #include "bench/rows/physical_device.h"
 #include "bench/statistics/launch_line.h"
-#include "core/pack/traits.h"
+#include "core/pack/kernel_id.h"
 
 #include <algorithm>
 

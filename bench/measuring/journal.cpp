@@ -1,8 +1,8 @@
 #include "bench/measuring/journal.h"
 
 #include "core/base/error.h"
+#include "core/base/files.h"
 #include "core/base/hash.h"
-#include "core/base/try_lock.h"
 
 #include <algorithm>
 #include <cerrno>

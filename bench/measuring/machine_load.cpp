@@ -1,6 +1,6 @@
 #include "bench/measuring/machine_load.h"
 
-#include "core/base/file_bytes.h"
+#include "core/base/files.h"
 
 #include <algorithm>
 #include <chrono>

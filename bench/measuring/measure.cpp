@@ -6,6 +6,8 @@
 #include "bench/rows/row_tracing.h"
 #include "bench/terminal/interrupts.h"
 #include "bench/terminal/progress.h"
+#include "bench/terminal/text.h"
+#include "core/base/files.h"
 #include "core/base/hash.h"
 #include "core/base/stopwatch.h"
 

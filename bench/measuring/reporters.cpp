@@ -1,8 +1,8 @@
 #include "bench/measuring/reporters.h"
 
-#include "bench/terminal/colour.h"
+#include "bench/terminal/text.h"
 #include "core/base/error.h"
-#include "core/base/whole_file.h"
+#include "core/base/files.h"
 
 #include <iostream>
 #include <unistd.h>

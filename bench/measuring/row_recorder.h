@@ -2,7 +2,7 @@
 
 #include "bench/measuring/journal.h"
 #include "bench/measuring/sampler.h"
-#include "bench/statistics/interval.h"
+#include "bench/statistics/statistics.h"
 #include "core/base/hash.h"
 #include "core/base/stopwatch.h"
 

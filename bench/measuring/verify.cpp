@@ -2,7 +2,7 @@
 
 #include "bench/measuring/visits.h"
 #include "bench/rows/row_tracing.h"
-#include "bench/truth/given_oracle.h"
+#include "bench/truth/oracle.h"
 #include "core/base/hash.h"
 #include "core/base/stopwatch.h"
 

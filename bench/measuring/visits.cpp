@@ -3,7 +3,7 @@
 #include "backends/openmp/kernels.h"
 #include "bench/rows/ray_store.h"
 #include "bench/rows/row_tracing.h"
-#include "core/device/host_session.h"
+#include "core/device/host.h"
 
 #include <fmt/format.h>
 #include <vector>

@@ -2,10 +2,13 @@
 
 #include "bench/options/identity.h"
 #include "core/base/error.h"
+#include "core/base/hash.h"
 
-#include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
 
 namespace tetrace {
 

@@ -4,8 +4,9 @@
 #include "bench/options/shard.h"
 #include "bench/results/result_file.h"
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
+
+#include <filesystem>
 #include <string>
 #include <vector>
 

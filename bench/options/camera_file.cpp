@@ -2,7 +2,7 @@
 
 #include "bench/options/option_values.h"
 #include "core/base/error.h"
-#include "core/base/file_bytes.h"
+#include "core/base/files.h"
 #include "core/base/hash.h"
 #include "core/base/printable.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/rays/aim.h"
+#include "core/rays/camera.h"
 
 #include <filesystem>
 #include <string>

@@ -3,7 +3,6 @@
 #include "bench/options/identity.h"
 #include "bench/options/manual.h"
 #include "bench/options/option_table.h"
-#include "bench/terminal/colour.h"
 #include "bench/terminal/text.h"
 #include "core/base/error.h"
 

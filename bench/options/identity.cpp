@@ -3,12 +3,16 @@
 #include "bench/options/commit.h"
 #include "core/base/printable.h"
 
-#include <charconv>
-#include <ctime>
 #include <fmt/chrono.h>
-#include <fstream>
 #include <sched.h>
 #include <sys/utsname.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
 
 namespace tetrace {
 
@@ -70,6 +74,106 @@ HostIdentity host_identity()
 std::string utc_now()
 {
     return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+}
+
+namespace {
+
+constexpr std::string_view before_path = " \t\n'\"`([{<=,:;|";
+constexpr std::string_view after_path = " \t\n'\"`)]}>,:;|&";
+
+void replace_all(std::string& text, const std::string& what, const std::string& by)
+{
+    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
+        text.replace(at, what.size(), by);
+}
+
+/// Replaces the home folder by "~" where it is a whole path or its beginning, but not part of a longer name.
+void shorten_home(std::string& text, const std::string& home)
+{
+    for (std::size_t at = text.find(home); at != std::string::npos; at = text.find(home, at + 1)) {
+        const std::size_t end = at + home.size();
+        if (end == text.size() || text[end] == '/' || after_path.find(text[end]) != std::string_view::npos)
+            text.replace(at, home.size(), 1, '~');
+    }
+}
+
+/// What remains of a path: its last part; nothing if that could be a person's folder, as in /home/name.
+std::string last_part(std::string path)
+{
+    path.erase(path.find_last_not_of('/') + 1);
+    const std::string name = std::filesystem::path(path).filename().string();
+    const bool deep = std::ranges::count(path, '/') > 2;
+    const bool has_ending = std::filesystem::path(name).has_extension();
+    return deep || has_ending ? name : "(a folder)";
+}
+
+bool starts_path(const std::string& text, std::size_t at)
+{
+    if (at > 0 && before_path.find(text[at - 1]) == std::string_view::npos) return false;
+    const std::size_t slash = text[at] == '~' ? at + 1 : at;
+    return slash + 1 < text.size() && text[slash] == '/' && text[slash + 1] != '/' &&
+           after_path.find(text[slash + 1]) == std::string_view::npos;
+}
+
+/// One past the path's last character. A quoted path may contain blanks.
+std::size_t path_end(const std::string& text, std::size_t at)
+{
+    const char before = at > 0 ? text[at - 1] : ' ';
+    if (before == '\'' || before == '"') {
+        const std::size_t quote = text.find(before, at);
+        if (quote < text.find('\n', at)) return quote;
+    }
+    return std::min(text.find_first_of(after_path, at), text.size());
+}
+
+std::string without_folders(const std::string& text)
+{
+    std::string result;
+    for (std::size_t at = 0; at < text.size();) {
+        if (!starts_path(text, at)) {
+            result += text[at++];
+            continue;
+        }
+        const std::size_t end = path_end(text, at);
+        result += last_part(text.substr(at, end - at));
+        at = end;
+    }
+    return result;
+}
+
+std::vector<std::filesystem::path> named_paths(const Options& options)
+{
+    std::vector<std::filesystem::path> paths(options.scenes.begin(), options.scenes.end());
+    paths.insert(paths.end(), options.files.begin(), options.files.end());
+    for (const auto* path : {&options.out, &options.junit, &options.picture_folder})
+        if (*path) paths.push_back(**path);
+    return paths;
+}
+
+void make_anonymous(nlohmann::json& value, const Options& options)
+{
+    if (value.is_string()) value = anonymous_text(value.get<std::string>(), options);
+    if (value.is_structured())
+        for (auto& part : value)
+            make_anonymous(part, options);
+}
+
+} // namespace
+
+std::string anonymous_text(const std::string& text, const Options& options)
+{
+    std::string result = text;
+    for (const std::filesystem::path& path : named_paths(options))
+        if (path.has_parent_path() && path.has_filename()) replace_all(result, path.string(), path.filename().string());
+    if (const char* home = std::getenv("HOME"); home != nullptr && std::string_view(home).size() > 1)
+        shorten_home(result, home);
+    return without_folders(result);
+}
+
+nlohmann::json anonymous_json(nlohmann::json result, const Options& options)
+{
+    make_anonymous(result, options);
+    return result;
 }
 
 } // namespace tetrace

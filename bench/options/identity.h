@@ -1,5 +1,9 @@
 #pragma once
 
+#include "bench/options/options.h"
+
+#include <nlohmann/json.hpp>
+
 #include <optional>
 #include <string>
 
@@ -27,5 +31,12 @@ struct HostIdentity {
 
 /// Now, in UTC: 2026-01-31T12:00:00Z.
 [[nodiscard]] std::string utc_now();
+
+/// The text without anything that identifies the machine. Three kinds of path keep only their last part: file names
+/// with an absolute path, paths that the options name, and paths below the home folder. A home folder becomes "~".
+[[nodiscard]] std::string anonymous_text(const std::string& text, const Options& options);
+
+/// The result with anonymous_text() applied to all its texts.
+[[nodiscard]] nlohmann::json anonymous_json(nlohmann::json result, const Options& options);
 
 } // namespace tetrace

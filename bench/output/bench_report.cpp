@@ -3,7 +3,7 @@
 #include "bench/measuring/figures.h"
 #include "bench/output/device_json.h"
 #include "bench/output/row_fields.h"
-#include "bench/statistics/median_ratio.h"
+#include "bench/statistics/rank_interval.h"
 #include "bench/terminal/text.h"
 
 #include <algorithm>

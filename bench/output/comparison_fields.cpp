@@ -1,7 +1,7 @@
 #include "bench/output/row_fields.h"
 
 #include "bench/output/field_parts.h"
-#include "bench/statistics/median_ratio.h"
+#include "bench/statistics/rank_interval.h"
 #include "bench/terminal/text.h"
 
 #include <fmt/format.h>

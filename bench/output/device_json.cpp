@@ -1,7 +1,7 @@
 #include "bench/output/device_json.h"
 
-#include "bench/results/read_into.h"
 #include "bench/results/result_file.h"
+#include "bench/results/result_value.h"
 #include "core/base/printable.h"
 
 #include <algorithm>

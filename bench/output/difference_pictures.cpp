@@ -1,6 +1,6 @@
 #include "bench/output/difference_pictures.h"
 
-#include "bench/pictures/picture_name.h"
+#include "bench/pictures/images.h"
 #include "bench/pictures/shading.h"
 #include "bench/rows/row_tracing.h"
 

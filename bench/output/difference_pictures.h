@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bench/measuring/verify.h"
-#include "bench/pictures/picture_writer.h"
+#include "bench/pictures/images.h"
 
 #include <filesystem>
 #include <vector>

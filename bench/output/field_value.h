@@ -3,7 +3,7 @@
 #include "bench/measuring/comparison.h"
 #include "bench/measuring/figures.h"
 #include "bench/measuring/row_devices.h"
-#include "bench/results/read_into.h"
+#include "bench/results/result_value.h"
 
 #include <functional>
 #include <nlohmann/json.hpp>

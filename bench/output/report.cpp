@@ -1,14 +1,13 @@
 #include "bench/output/report.h"
 
-#include "bench/options/anonymous.h"
 #include "bench/options/identity.h"
 #include "bench/results/result_file.h"
-#include "bench/results/result_text.h"
-#include "bench/terminal/colour.h"
+#include "bench/results/result_value.h"
 #include "bench/terminal/interrupts.h"
 #include "bench/terminal/progress.h"
+#include "bench/terminal/text.h"
 #include "core/base/error.h"
-#include "core/base/whole_file.h"
+#include "core/base/files.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -30,7 +30,7 @@ void check_not_an_input(const std::filesystem::path& out, const std::vector<std:
 void check_writable(const char* option, const std::filesystem::path& path);
 
 /// Writes the report where --format and --out say: to standard output, the file, or both. With --anonymous, writes it
-/// as bench/options/anonymous.h describes.
+/// as bench/options/identity.h describes.
 /// Throws Error{invalid_input} naming the file and the system's reason.
 void deliver(const Options& options, const Report& report);
 

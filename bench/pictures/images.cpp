@@ -1,12 +1,49 @@
 #include "bench/pictures/images.h"
 
 #include "core/base/error.h"
+#include "core/base/files.h"
 
-#include <array>
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <array>
+
 namespace tetrace {
+
+std::filesystem::path picture_path(const std::optional<std::filesystem::path>& out, const PictureKey& key,
+                                   const std::string& ending, bool only_picture)
+{
+    const std::string name = fmt::format("{}-{}-{}", key.scene, key.view, name_of(key.picture));
+    if (!out) return name + ending;
+    if (std::filesystem::is_directory(*out)) return *out / (name + ending);
+    if (only_picture) return *out;
+    return out->parent_path() / fmt::format("{}-{}{}", out->stem().string(), name, ending);
+}
+
+std::string picture_ending(const std::optional<std::filesystem::path>& out, bool can_write_png)
+{
+    if (out && !std::filesystem::is_directory(*out)) return out->extension().string();
+    return can_write_png ? ".png" : ".ppm";
+}
+
+void check_picture_ending(const std::optional<std::filesystem::path>& out)
+{
+    if (!out || std::filesystem::is_directory(*out)) return;
+    const std::string ending = out->extension().string();
+    if (ending != ".png" && ending != ".exr" && ending != ".ppm")
+        throw Error(ErrorKind::usage, fmt::format("--out '{}': accepted are a file that ends in .png, .exr or .ppm, or "
+                                                  "a folder that is there",
+                                                  out->string()));
+}
+
+std::string ppm_bytes(const Pixmap& pixmap)
+{
+    std::string bytes = fmt::format("P6\n{} {}\n255\n", pixmap.width, pixmap.height);
+    for (const Colour& colour : pixmap.pixels)
+        for (const float channel : {colour.r, colour.g, colour.b})
+            bytes += static_cast<char>(to_srgb(channel));
+    return bytes;
+}
 
 namespace {
 
@@ -61,6 +98,16 @@ std::string ImageEncoder::bytes(const std::string& ending, const Pixmap& pixmap)
         throw Error(ErrorKind::invalid_input, fmt::format("making a picture ({}): {}", ending, reason.data()));
     }
     return bytes;
+}
+
+PictureWriter::PictureWriter(const std::string& ending)
+{
+    if (ending != ".ppm") images_.emplace();
+}
+
+void PictureWriter::write(const std::filesystem::path& path, const Pixmap& pixmap) const
+{
+    write_whole(path, images_ ? images_->bytes(path.extension().string(), pixmap) : ppm_bytes(pixmap));
 }
 
 } // namespace tetrace

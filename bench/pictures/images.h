@@ -1,9 +1,38 @@
 #pragma once
 
+#include "bench/options/options.h"
 #include "bench/pictures/pixmap.h"
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
+
+namespace tetrace {
+
+/// What a picture shows; differs for each picture of a run.
+struct PictureKey {
+    std::string scene;
+    std::uint32_t view = 0;
+    Picture picture = Picture::normals;
+};
+
+/// The file of a picture: `out` itself where it is the run's only one, else with "-scene-view-kind" in front of its
+/// ending; "scene-view-kind" with the given ending in the folder `out`, or in the current one without `out`.
+[[nodiscard]] std::filesystem::path picture_path(const std::optional<std::filesystem::path>& out, const PictureKey& key,
+                                                 const std::string& ending, bool only_picture);
+
+/// The ending of all pictures of a run: that of the file `out`; else .png, or .ppm where nothing can write PNG.
+[[nodiscard]] std::string picture_ending(const std::optional<std::filesystem::path>& out, bool can_write_png);
+
+/// Throws Error{usage} if `out` is neither a folder nor has an accepted ending.
+void check_picture_ending(const std::optional<std::filesystem::path>& out);
+
+/// The picture as a PPM file's bytes (P6, 8 bits of sRGB per channel), which need no library.
+/// Source: https://netpbm.sourceforge.net/doc/ppm.html.
+[[nodiscard]] std::string ppm_bytes(const Pixmap& pixmap);
+
+} // namespace tetrace
 
 // The one function of the images module, with C linkage. The module is a separate shared object: OpenImageIO depends on
 // some 260 libraries, which must not be in the process that measures.
@@ -34,6 +63,20 @@ public:
 
 private:
     decltype(&tetrace_encode_image) encode_image_;
+};
+
+/// Writes pictures of one file format; loads what that needs.
+class PictureWriter {
+public:
+    /// ending: .ppm, which needs nothing; .png or .exr, which load the images module.
+    /// Throws Error{missing} if the module is needed and missing.
+    explicit PictureWriter(const std::string& ending);
+
+    /// Throws Error{invalid_input} naming the file and the reason.
+    void write(const std::filesystem::path& path, const Pixmap& pixmap) const;
+
+private:
+    std::optional<ImageEncoder> images_; ///< of all forms but .ppm
 };
 
 } // namespace tetrace

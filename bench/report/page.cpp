@@ -1,14 +1,32 @@
 #include "bench/report/page.h"
 
 #include "bench/options/identity.h"
-#include "bench/report/campaign/campaign_sections.h"
+#include "bench/report/campaign/campaign.h"
 #include "bench/report/html/svg.h"
+#include "bench/report/png.h"
+#include "bench/report/sections.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
-#include <fmt/format.h>
 #include <map>
 
 namespace tetrace {
+
+Section picture_section(const ReportInput& input)
+{
+    Section section{"pictures", "Pictures", {}};
+    Html pictures;
+    for (const std::filesystem::path& path : input.pictures)
+        pictures += picture_figure(path);
+    section.is_empty = pictures.empty();
+    section.content =
+        pictures.empty()
+            ? paragraph("No picture was given: --picture accepts the PNG and PPM files that 'tetrace render' writes "
+                        "(the surface, and the steps of each ray), and 'tetrace check' if a row differs.")
+            : side_by_side(pictures);
+    return section;
+}
 
 namespace {
 
@@ -146,7 +164,7 @@ std::string report_page(const ReportInput& input)
 std::string campaign_page(const Campaign& campaign, const std::vector<std::filesystem::path>& pictures)
 {
     std::vector<Section> sections;
-    for (const auto make : {index_section, beside_section, trend_section})
+    for (const auto make : {index_section, machines_section, trend_section})
         sections.push_back(make(campaign));
     if (!pictures.empty()) sections.push_back(picture_section({{}, {}, pictures}));
     return page_of(page_head(facts_of(campaign), {}), sections);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/report/html/html_table.h"
+#include "bench/report/html/html.h"
 #include "bench/report/report_rows.h"
 
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/statistics/interval.h"
+#include "bench/statistics/statistics.h"
 #include "core/base/enum_names.h"
 
 #include <nlohmann/json.hpp>

@@ -1,7 +1,7 @@
 #include "bench/reproduce/speed.h"
 
 #include "bench/measuring/figures.h"
-#include "core/pack/traits.h"
+#include "core/pack/kernel_id.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -9,6 +9,40 @@
 
 namespace tetrace {
 
+/// The scene that a row was timed on. Throws Error{invalid_input} naming file and row where the file does not have it.
+[[nodiscard]] const ResultScene& scene_of(const ResultFile& file, const ResultRow& row);
+
+/// Why two rows of equal names, of results A and B, did not do the same work: their scenes, views, sizes or hit hashes
+/// differ, or on a GPU the numbers of launches; of exit searches, their number or the hash of their faces. Empty where
+/// they did the same. Throws as scene_of() does.
+[[nodiscard]] std::string different_work(const ResultFile& a, const ResultRow& row_a, const ResultFile& b,
+                                         const ResultRow& row_b);
+
+/// Equal texts are the same rays through the same scene, or the same searches. Throws as scene_of() does.
+[[nodiscard]] std::string rays_of(const ResultFile& file, const ResultRow& row);
+
+/// Equal texts are the same work: the same row with the same rays and the same answers. Empty for a row that has no
+/// hash of its answers, whose work nobody can tell. Throws as scene_of() does.
+[[nodiscard]] std::string work_of(const ResultFile& file, const ResultRow& row);
+
+/// What shows whether the machine kept its speed while a row was timed.
+struct RatePulse {
+    std::optional<double> ratio;  ///< of calibration during the row's samples to its run's fastest
+    std::optional<double> host_s; ///< the run's fastest pulse of the host, of rows on the host; empty where not taken
+
+    /// Whether the rate is noisy because of calibration: noisy_pulse (bench/statistics/statistics.h) or more.
+    [[nodiscard]] bool is_noisy() const;
+};
+
+[[nodiscard]] RatePulse pulse_of(const ResultHead& head, const ResultRow& row);
+
+/// Why the machine, and not the row, may have changed between two rates: "NOISY" for `compare` and for the page of a
+/// folder. Empty if nothing says so. same_machine: with as many threads; of others the comparison is to tell.
+/// names: of the two, as in "in A the pulse ...".
+[[nodiscard]] std::string disturbance_between(const RatePulse& before, const RatePulse& after, bool same_machine,
+                                              const std::string& before_name = "A",
+                                              const std::string& after_name = "B");
+
 /// How a row of one or both results compares.
 enum class RowOutcome {
     compared,  ///< timed in both
@@ -63,10 +97,10 @@ struct ResultComparison {
 
 /// Compares rows of equal names, of those whose name the regular expression matches (bench/options/name_filter.h;
 /// empty: all). A row timed in both whose scenes' hashes, views, sizes or hit hashes differ did different work, and is
-/// not compared; so did exit searches of other numbers (bench/results/same_work.h). A row is noisy where its pulse
-/// moved by noisy_pulse (bench/statistics/statistics.h) in either run, or, on the host and one machine, between the
-/// two. Throws Error{invalid_input} if all such rows did different work, with the reasons; and if there is nothing to
-/// compare: before lacks timed rows, or the two share no row.
+/// not compared; so did exit searches of other numbers (bench/results/result_comparison.h). A row is noisy where its
+/// pulse moved by noisy_pulse (bench/statistics/statistics.h) in either run, or, on the host and one machine, between
+/// the two. Throws Error{invalid_input} if all such rows did different work, with the reasons; and if there is nothing
+/// to compare: before lacks timed rows, or the two share no row.
 [[nodiscard]] ResultComparison compare_results(const ResultFile& before, const ResultFile& after,
                                                const std::string& filter, double tolerance);
 

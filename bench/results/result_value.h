@@ -1,14 +1,27 @@
 #pragma once
 
+#include "core/base/enum_names.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <concepts>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace tetrace {
+
+/// The text of a result file: what an array or an object holds is filled into lines of up to 120 characters, as far as
+/// it fits; what is longer begins a line of its own, and its contents are indented by one more blank. It ends in a line
+/// break. Reading it gives the same value, but for texts that are not UTF-8, in which U+FFFD takes the place of each
+/// bad byte, so that no result is lost because of a path. A number a line, as other writers have it, takes twice the
+/// bytes for results with many samples or points.
+[[nodiscard]] std::string result_text(const nlohmann::json& value);
 
 /// A value of a result file that knows its place in it. A request that the value does not meet throws
 /// Error{invalid_input} naming the file and the key, for example "a.json: tetrace.rows[3].times.samples_s: ...".
@@ -55,5 +68,60 @@ private:
     std::string file_;
     std::string key_; ///< empty: the whole
 };
+
+// Reads a value of a result into a member of its type. Each throws Error{invalid_input} naming file and key for a value
+// that the type does not have.
+
+inline void read_into(double& to, const ResultValue& from)
+{
+    to = from.number();
+}
+inline void read_into(bool& to, const ResultValue& from)
+{
+    to = from.flag();
+}
+/// Of one line.
+inline void read_into(std::string& to, const ResultValue& from)
+{
+    to = from.line();
+}
+template <std::unsigned_integral Count>
+void read_into(Count& to, const ResultValue& from)
+{
+    const std::uint64_t count = from.count();
+    if (count > std::numeric_limits<Count>::max()) from.reject("is too large");
+    to = static_cast<Count>(count);
+}
+/// By its name.
+template <NamedEnum Enum>
+void read_into(Enum& to, const ResultValue& from)
+{
+    const std::string name = from.line();
+    for (const Enum one : values_of<Enum>())
+        if (name == name_of(one)) {
+            to = one;
+            return;
+        }
+    from.reject(fmt::format("is '{}'; this tetrace knows {}", name, fmt::join(enum_names<Enum>, ", ")));
+}
+template <class Value>
+void read_into(std::optional<Value>& to, const ResultValue& from)
+{
+    read_into(to.emplace(), from);
+}
+template <class Value>
+void read_into(std::vector<Value>& to, const ResultValue& from)
+{
+    to.clear();
+    for (const ResultValue& item : from.items())
+        read_into(to.emplace_back(), item);
+}
+
+/// If the object has the key.
+template <class Value>
+void read_member(Value& to, const ResultValue& object, const char* key)
+{
+    if (const auto value = object.find(key)) read_into(to, *value);
+}
 
 } // namespace tetrace

@@ -2,7 +2,7 @@
 
 #include "bench/rivals/rival_claims.h"
 #include "bench/rows/row_record.h"
-#include "bench/statistics/interval.h"
+#include "bench/statistics/statistics.h"
 
 #include <nlohmann/json.hpp>
 #include <optional>

@@ -3,7 +3,7 @@
 #include "bench/reproduce/claims.h"
 #include "bench/rivals/contest.h"
 #include "bench/rows/row_record.h"
-#include "bench/statistics/interval.h"
+#include "bench/statistics/statistics.h"
 
 #include <optional>
 #include <string>

@@ -2,7 +2,7 @@
 
 #include "bench/rows/physical_device.h"
 #include "core/base/printable.h"
-#include "core/device/open_checks.h"
+#include "core/device/session.h"
 #include "scenes/cache.h"
 
 #include <fmt/format.h>

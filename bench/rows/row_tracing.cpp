@@ -3,7 +3,7 @@
 #include "bench/rows/ray_store.h"
 #include "core/base/hash.h"
 #include "core/base/stopwatch.h"
-#include "core/device/output_parts.h"
+#include "core/device/launch.h"
 
 #include <algorithm>
 

@@ -4,7 +4,7 @@
 #include "bench/options/options.h"
 #include "bench/rows/ray_store.h"
 #include "core/device/backend.h"
-#include "core/mesh/moving_start.h"
+#include "core/mesh/locate.h"
 #include "scenes/load.h"
 
 #include <map>

@@ -1,6 +1,5 @@
 #include "bench/terminal/progress.h"
 
-#include "bench/terminal/colour.h"
 #include "bench/terminal/text.h"
 #include "core/base/error.h"
 #include "core/base/printable.h"

@@ -1,7 +1,7 @@
 #include "bench/truth/hit_checks.h"
 
 #include "core/base/error.h"
-#include "core/base/ulps.h"
+#include "core/base/exact.h"
 
 #include <algorithm>
 #include <cstring>

@@ -2,8 +2,8 @@
 
 #include "bench/truth/exact_search.h"
 #include "bench/truth/hit_point.h"
+#include "bench/truth/oracle.h"
 #include "bench/truth/settle.h"
-#include "bench/truth/verdicts.h"
 
 #include <algorithm>
 #include <cstddef>

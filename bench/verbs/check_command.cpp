@@ -2,17 +2,17 @@
 #include "bench/measuring/ray_walks.h"
 #include "bench/measuring/run_journal.h"
 #include "bench/measuring/scene_records.h"
-#include "bench/options/anonymous.h"
+#include "bench/options/identity.h"
 #include "bench/output/check_matrix.h"
 #include "bench/output/difference_pictures.h"
 #include "bench/output/junit.h"
 #include "bench/output/report.h"
 #include "bench/output/row_fields.h"
-#include "bench/show/check_sheet.h"
+#include "bench/show/show_report.h"
 #include "bench/terminal/interrupts.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
-#include "core/base/whole_file.h"
+#include "core/base/files.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,9 +1,9 @@
 #include "bench/debugging/defect_report.h"
-#include "bench/options/anonymous.h"
+#include "bench/options/identity.h"
 #include "bench/rows/rows.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
-#include "core/base/whole_file.h"
+#include "core/base/files.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,9 +1,9 @@
 #include "bench/debugging/dump.h"
-#include "bench/terminal/colour.h"
 #include "bench/terminal/progress.h"
+#include "bench/terminal/text.h"
 #include "bench/verbs/commands.h"
 #include "core/base/error.h"
-#include "core/base/whole_file.h"
+#include "core/base/files.h"
 #include "core/isolation/isolation.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "bench/inspection/inspection_report.h"
+#include "bench/inspection/inspection.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
 #include "core/base/error.h"

@@ -1,10 +1,9 @@
-#include "bench/merging/machines.h"
 #include "bench/merging/merged_rows.h"
 #include "bench/output/bench_report.h"
 #include "bench/output/check_matrix.h"
 #include "bench/output/row_fields.h"
-#include "bench/show/check_sheet.h"
 #include "bench/show/recorded_rows.h"
+#include "bench/show/show_report.h"
 #include "bench/verbs/commands.h"
 #include "bench/verbs/reproduction.h"
 

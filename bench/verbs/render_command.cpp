@@ -1,6 +1,5 @@
 #include "bench/pictures/false_colour.h"
-#include "bench/pictures/picture_name.h"
-#include "bench/pictures/picture_writer.h"
+#include "bench/pictures/images.h"
 #include "bench/pictures/shading.h"
 #include "bench/rows/row_run.h"
 #include "bench/rows/row_tracing.h"

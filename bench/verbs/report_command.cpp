@@ -4,7 +4,7 @@
 #include "bench/terminal/progress.h"
 #include "bench/terminal/text.h"
 #include "bench/verbs/commands.h"
-#include "core/base/whole_file.h"
+#include "core/base/files.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,6 @@
 #include "bench/reproduce/kept_costs.h"
 #include "bench/reproduce/tables/pictures.h"
 #include "bench/rivals/rival_run.h"
-#include "bench/rivals/rival_tables.h"
 #include "bench/terminal/interrupts.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"

@@ -1,4 +1,4 @@
-#include "bench/debugging/trace_report.h"
+#include "bench/debugging/trace_run.h"
 #include "bench/measuring/scene_rows.h"
 #include "bench/verbs/commands.h"
 

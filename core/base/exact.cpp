@@ -2,9 +2,13 @@
 
 #include <boost/multiprecision/cpp_int.hpp>
 
+#include <bit>
 #include <cmath>
+#include <cstdlib>
+#include <limits>
 
 namespace tetrace {
+
 namespace {
 
 using boost::multiprecision::int256_t;
@@ -119,6 +123,15 @@ std::strong_ordering compare_distance(Float3 origin, Float3 direction, const Flo
 double tie_bound(Float3 origin)
 {
     return 10 * 0x1p-24 * (length(to_double(origin)) + std::sqrt(3.0));
+}
+
+std::uint64_t ulps_between(float a, float b)
+{
+    if (a == b) return 0;
+    if (!std::isfinite(a) || !std::isfinite(b) || std::signbit(a) != std::signbit(b))
+        return std::numeric_limits<std::uint64_t>::max();
+    const std::int64_t distance = std::int64_t{std::bit_cast<std::int32_t>(a)} - std::bit_cast<std::int32_t>(b);
+    return static_cast<std::uint64_t>(std::abs(distance));
 }
 
 } // namespace tetrace

@@ -3,6 +3,7 @@
 #include "core/base/vec.h"
 
 #include <compare>
+#include <cstdint>
 
 namespace tetrace {
 
@@ -34,5 +35,8 @@ struct ExactCrossing {
 /// Largest distance between a ray and an edge at which float32 may decide the edge either way:
 /// 10 ulp(1/2) (|origin| + sqrt 3), derived for the side products of `maria` in docs/spec/numbers.md, N2. Domain units.
 [[nodiscard]] double tie_bound(Float3 origin);
+
+/// Units in the last place between two floats; huge where their signs differ or one is not finite.
+[[nodiscard]] std::uint64_t ulps_between(float a, float b);
 
 } // namespace tetrace

@@ -37,4 +37,23 @@ struct Bvh {
 /// each; the leaves of a triangle together cover its box.
 [[nodiscard]] std::optional<std::string> find_defect(const Bvh& bvh, const TriangleMesh& mesh);
 
+/// A BVH of the least depth: triangles are halved by their boxes' centres along the longest axis until at most 4 are
+/// left. It traces more slowly than a tree by the surface area heuristic, and serves meshes for which that is too deep.
+/// mesh: at least one triangle, finite.
+[[nodiscard]] Bvh build_balanced_bvh(const TriangleMesh& mesh);
+
+/// The boxes of a triangle's two parts.
+struct TriangleParts {
+    Box below, above;
+};
+
+/// Cuts a triangle at a plane across an axis. Returns the boxes of the parts on either side that lie in `box`, rounded
+/// outwards; empty if that part is empty. What is in the plane is in both.
+[[nodiscard]] TriangleParts split_triangle(const Float3 (&corners)[3], int axis, float position, const Box& box);
+
+/// The same BVH with each leaf split, at the least surface area, until leaves have one triangle. References are in the
+/// order of the leaves, so the references below a node are contiguous.
+/// bvh: valid for this mesh (see find_defect).
+[[nodiscard]] Bvh with_single_leaves(const TriangleMesh& mesh, const Bvh& bvh);
+
 } // namespace tetrace

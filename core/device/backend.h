@@ -1,15 +1,15 @@
 #pragma once
 
-#include "core/device/compiled_code.h"
-#include "core/device/output_parts.h"
 #include "core/pack/kernel_id.h"
 #include "core/pack/packed_scene.h"
 #include "core/rays/camera.h"
 #include "core/rays/hit.h"
+#include "kernels/layouts/layout.h"
 
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -18,6 +18,64 @@
 #include <vector>
 
 namespace tetrace {
+
+/// Where a launch's jobs write their results in its output: each job between GUARD_WORDS of its own before and after
+/// them, one job after the other. All sizes are in words.
+class OutputParts {
+public:
+    /// Each part begins at a multiple of it: 4096 bytes, which suits every API as the offset of a buffer's part.
+    static constexpr std::size_t alignment = 1024;
+
+    OutputParts() = default;
+    /// rays: of each job.
+    OutputParts(std::span<const std::size_t> rays, std::size_t words_per_ray)
+    {
+        for (const std::size_t count : rays) {
+            const std::size_t begin = (words() + alignment - 1) / alignment * alignment;
+            parts_.push_back({begin, 2 * std::size_t{GUARD_WORDS} + words_per_ray * count});
+        }
+    }
+
+    /// Number of jobs.
+    [[nodiscard]] std::size_t count() const { return parts_.size(); }
+    /// The whole output.
+    [[nodiscard]] std::size_t words() const { return parts_.empty() ? 0 : parts_.back().begin + parts_.back().size; }
+    /// First guard word of a job: what its kernel is given as the output.
+    [[nodiscard]] std::size_t begin(std::size_t job) const { return parts_[job].begin; }
+    /// Of a job, with its guard words.
+    [[nodiscard]] std::size_t size(std::size_t job) const { return parts_[job].size; }
+    /// A job's results in the whole output.
+    template <class Word>
+    [[nodiscard]] std::span<Word> results(std::span<Word> output, std::size_t job) const
+    {
+        return output.subspan(begin(job) + GUARD_WORDS, size(job) - 2 * std::size_t{GUARD_WORDS});
+    }
+
+    friend bool operator==(const OutputParts&, const OutputParts&) = default;
+
+private:
+    struct Part {
+        std::size_t begin, size;
+        friend bool operator==(const Part&, const Part&) = default;
+    };
+    std::vector<Part> parts_;
+};
+
+/// What a device's compiler made of a kernel.
+struct CompiledCode {
+    std::string compiler;                     ///< driver with version, and the device that it compiled for
+    unsigned lanes = 0;                       ///< of a subgroup
+    std::map<std::string, double> statistics; ///< under the names that the compiler gives them
+    std::string text;                         ///< the code, one instruction per line; empty if the driver shows none
+};
+
+/// A file for those who look into a kernel without this program.
+struct KernelFile {
+    std::string name;
+    std::string what;    ///< what it is, and what else compiling it needs; without a full stop
+    std::string command; ///< that makes or compiles it without tetrace; empty if there is none
+    std::string bytes;
+};
 
 /// What a device computes on. Emulated: a GPU's API that runs on this machine's processor.
 enum class DeviceKind { cpu, gpu, emulated };
@@ -207,7 +265,7 @@ public:
     /// its code, Error{internal} if it fails.
     [[nodiscard]] virtual CompiledCode compiled(std::size_t device, const std::optional<KernelId>& kernel,
                                                 bool starts_outside) const;
-    /// Whether run_defect() runs the reduced kernels of core/debugging/defects.h.
+    /// Whether run_defect() runs the reduced kernels of core/device/defects.h.
     [[nodiscard]] virtual bool runs_defects() const { return false; }
     /// Compiles the reduced kernel of that name and runs it; returns a word for each item. Throws Error as open() does.
     [[nodiscard]] virtual std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name);

@@ -1,7 +1,7 @@
 #include "core/device/given_quads.h"
 
 #include "core/base/error.h"
-#include "core/rays/ray_offset.h"
+#include "core/rays/ray_start.h"
 
 #include <bit>
 #include <string>

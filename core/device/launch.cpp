@@ -1,7 +1,7 @@
 #include "core/device/launch.h"
 
 #include "core/base/error.h"
-#include "core/pack/traits.h"
+#include "core/pack/kernel_id.h"
 #include "kernels/layouts/layout.h"
 
 #include <algorithm>

@@ -1,9 +1,13 @@
 #pragma once
 
 #include "core/device/backend.h"
+#include "kernels/layouts/layout.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <span>
+#include <vector>
 
 namespace tetrace {
 

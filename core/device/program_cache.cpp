@@ -1,8 +1,7 @@
 #include "core/device/program_cache.h"
 
-#include "core/base/atomic_file.h"
 #include "core/base/error.h"
-#include "core/base/file_bytes.h"
+#include "core/base/files.h"
 
 #include <cstring>
 #include <string>

@@ -1,7 +1,7 @@
 #include "core/device/self_test.h"
 
 #include "core/base/error.h"
-#include "core/base/ulps.h"
+#include "core/base/exact.h"
 
 #include <algorithm>
 #include <bit>

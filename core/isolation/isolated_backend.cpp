@@ -1,11 +1,159 @@
 #include "core/isolation/isolated_backend.h"
 
 #include "core/device/device_facts.h"
-#include "core/isolation/isolated_session.h"
+#include "core/device/launch.h"
 
+#include <algorithm>
 #include <tuple>
 
 namespace tetrace {
+
+IsolatedSession::IsolatedSession(const IsolatedBackend& backend, std::size_t device, const KernelId& kernel,
+                                 const SceneData& scene, SessionOptions options)
+    : backend_(&backend), device_(device), kernel_(kernel), scene_(scene), options_(std::move(options))
+{
+    open();
+}
+
+IsolatedSession::~IsolatedSession()
+{
+    if (number_ == 0 || child_->is_lost()) return;
+    try {
+        call(Request::close, "closing " + name_of(kernel_), {}, {}, call_limit_s(0));
+    } catch (const std::exception&) { // the next session starts another process
+    }
+}
+
+ByteReader IsolatedSession::call(Request what, const std::string& doing, const ByteWriter& arguments,
+                                 const SharedMemory& memory, double limit_s)
+{
+    ByteWriter request;
+    request.put(what);
+    request.put(number_);
+    request.append(arguments);
+    ByteReader answer = child_->call({doing, request, memory.file(), limit_s});
+    facts_ = answer.get<SessionFacts>();
+    return answer;
+}
+
+void IsolatedSession::open()
+{
+    number_ = 0;
+    remote_scene_ = nullptr;
+    child_ = backend_->child_of(device_);
+    const void* const scene = scene_of(kernel_, scene_);
+    auto remote = scene == nullptr ? nullptr : child_->find_scene(scene);
+    const bool is_new = scene != nullptr && remote == nullptr;
+    if (is_new) remote = child_->add_scene(scene);
+    ByteWriter request;
+    request.put(Request::open);
+    request.put(std::uint64_t{device_});
+    request.put(kernel_);
+    put_options(request, options_);
+    request.put(remote == nullptr ? std::uint64_t{0} : remote->number);
+    request.put(is_new);
+    const SharedMemory memory = is_new ? put_scene(request, kernel_, scene_) : SharedMemory();
+    ByteReader answer =
+        child_->call({"opening " + name_of(kernel_), request, memory.file(), call_limit_s(0, memory.bytes().size())});
+    number_ = answer.get<std::uint64_t>();
+    remote_scene_ = std::move(remote);
+    facts_ = answer.get<SessionFacts>();
+}
+
+bool IsolatedSession::is_still_open()
+{
+    if (number_ != 0 && !child_->is_lost()) return true;
+    open();
+    if (has_rays_) send_rays();
+    return false;
+}
+
+void IsolatedSession::require_launched()
+{
+    if (is_still_open() || jobs_.empty()) return;
+    send_jobs();
+    static_cast<void>(await_jobs());
+}
+
+void IsolatedSession::set_rays(std::span<const Quad> quads)
+{
+    has_rays_ = false;
+    if (quads.size_bytes() > rays_.bytes().size()) {
+        rays_ = {}; // before there are two
+        rays_ = SharedMemory(quads.size_bytes());
+    }
+    std::ranges::copy(std::as_bytes(quads), rays_.bytes().begin());
+    quads_ = quads.size();
+    static_cast<void>(is_still_open());
+    send_rays();
+    has_rays_ = true;
+}
+
+void IsolatedSession::send_rays()
+{
+    ByteWriter arguments;
+    arguments.put(quads_);
+    call(Request::set_rays, "copying the rays of " + name_of(kernel_), arguments, rays_,
+         call_limit_s(0, quads_ * sizeof(Quad)));
+}
+
+void IsolatedSession::start(std::span<const TraceJob> jobs)
+{
+    static_cast<void>(is_still_open());
+    jobs_.assign(jobs.begin(), jobs.end());
+    send_jobs();
+}
+
+void IsolatedSession::send_jobs()
+{
+    ByteWriter arguments;
+    arguments.put_all(std::span<const TraceJob>(jobs_));
+    call(Request::launch, "launching " + name_of(kernel_), arguments, {}, call_limit_s(rays()));
+}
+
+double IsolatedSession::wait()
+{
+    if (!is_still_open() && !jobs_.empty()) send_jobs();
+    return await_jobs();
+}
+
+double IsolatedSession::await_jobs()
+{
+    return call(Request::wait, "running " + name_of(kernel_), {}, {}, call_limit_s(rays())).get<double>();
+}
+
+std::uint64_t IsolatedSession::rays() const
+{
+    std::uint64_t rays = 0;
+    for (const TraceJob& job : jobs_)
+        rays += job.rays();
+    return rays;
+}
+
+/// The other process has checked the guard words; here they are as they should be.
+void IsolatedSession::read_output(std::span<std::uint32_t> words)
+{
+    require_launched();
+    const bool are_faces = kernel_.task == Task::search;
+    const OutputParts parts = output_parts(words_per_ray(kernel_.task));
+    const std::size_t bytes = rays() * words_per_ray(kernel_.task) * sizeof(words[0]);
+    if (bytes > output_.bytes().size()) {
+        output_ = {};
+        output_ = SharedMemory(bytes);
+    }
+    ByteWriter arguments;
+    arguments.put(rays());
+    download_s_ = call(are_faces ? Request::read_faces : Request::read_hits, "reading the hits of " + name_of(kernel_),
+                       arguments, output_, call_limit_s(0, bytes))
+                      .get<double>();
+    std::ranges::fill(words, POISON);
+    std::span<const std::byte> read = output_.bytes();
+    for (std::size_t job = 0; job < parts.count(); ++job) {
+        const auto results = std::as_writable_bytes(parts.results(words, job));
+        std::ranges::copy(read.first(results.size()), results.begin());
+        read = read.subspan(results.size());
+    }
+}
 
 namespace {
 

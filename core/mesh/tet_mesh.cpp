@@ -6,6 +6,7 @@
 #include <cmath>
 
 namespace tetrace {
+
 namespace {
 
 using Kind = TetMeshDefect::Kind;

@@ -1,9 +1,9 @@
 #include "core/base/error.h"
 #include "core/mesh/entry_grid.h"
-#include "core/mesh/face_corners.h"
+#include "core/mesh/tet_mesh.h"
 #include "core/pack/hilbert.h"
+#include "core/pack/kernel_id.h"
 #include "core/pack/packed_scene.h"
-#include "core/pack/traits.h"
 
 #include <algorithm>
 #include <bit>

@@ -2,8 +2,8 @@
 
 #include "core/bvh/bvh.h"
 #include "core/bvh/wide_bvh.h"
+#include "core/pack/kernel_id.h"
 #include "core/pack/packed_scene.h"
-#include "core/pack/traits.h"
 
 #include <span>
 

@@ -1,14 +1,22 @@
-#include "core/pack/pack_compact.h"
-
 #include "core/base/error.h"
-#include "core/mesh/face_corners.h"
+#include "core/mesh/tet_mesh.h"
+#include "core/pack/kernel_id.h"
+#include "core/pack/packed_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <string>
 
 namespace tetrace {
+
 namespace {
+
+using FourWords = std::array<std::uint32_t, 4>;
+
+/// Appends the words of a tet. vertices: the xor of its four. behind: what is across the face opposite each of them
+/// (kernels/layouts/layout.h), by ascending number of the vertex.
+using AddTet = void(std::vector<std::uint32_t>& words, std::uint32_t vertices, const FourWords& behind);
 
 constexpr std::uint32_t not_numbered = 0xFFFFFFFFu;
 
@@ -133,8 +141,14 @@ void name_entry_faces(PackedScene& packed, const TetMesh& mesh)
     packed.entry_half_faces.clear();
 }
 
-} // namespace
-
+/// Packs tets that share their vertices: `tets`, `vertices`, `occlusive_faces`, and `entry_faces` in place of
+/// `entry_half_faces`. Vertices are numbered in the order in which the tets first name them, so that they are near
+/// their tets' order in memory.
+/// mesh: see PackTets in core/pack/kernel_id.h.
+/// Throws Error{unsupported} if a tet and its neighbour do not name each other, so that a walk could not derive the
+/// tet's vertices; if a face of the boundary is occlusive; or if there are too many occlusive faces. Source: Aman,
+/// Demirci, Guedukbay, "Compact Tetrahedralization-Based Acceleration Structures for Ray Tracing", Journal of
+/// Visualization 25, 2022; docs/spec/layouts.md, L8.
 void pack_compact(PackedScene& packed, const TetMesh& mesh, AddTet& add_tet)
 {
     require_walkable(mesh, packed.layout);
@@ -150,6 +164,24 @@ void pack_compact(PackedScene& packed, const TetMesh& mesh, AddTet& add_tet)
     }
     packed.tets = quads_of_words(std::move(words));
     name_entry_faces(packed, mesh);
+}
+
+} // namespace
+
+void pack_tet20(PackedScene& packed, const TetMesh& mesh)
+{
+    pack_compact(
+        packed, mesh, *[](std::vector<std::uint32_t>& words, std::uint32_t vertices, const FourWords& behind) {
+            words.insert(words.end(), {vertices, behind[0], behind[1], behind[2], behind[3]});
+        });
+}
+
+void pack_tet16(PackedScene& packed, const TetMesh& mesh)
+{
+    pack_compact(
+        packed, mesh, *[](std::vector<std::uint32_t>& words, std::uint32_t vertices, const FourWords& behind) {
+            words.insert(words.end(), {vertices, behind[0] ^ behind[3], behind[1] ^ behind[3], behind[2] ^ behind[3]});
+        });
 }
 
 } // namespace tetrace

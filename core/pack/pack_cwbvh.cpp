@@ -1,16 +1,113 @@
-#include "core/pack/pack_bvh.h"
+#include "core/pack/pack_cwbvh.h"
 
-#include "core/bvh/box_grid.h"
-#include "core/bvh/single_leaves.h"
+#include "core/bvh/bvh.h"
 #include "core/bvh/wide_bvh.h"
-#include "core/pack/octant_slots.h"
+#include "core/pack/pack_bvh.h"
 #include "kernels/layouts/layout.h"
 
 #include <array>
 #include <bit>
+#include <limits>
 #include <string>
 
 namespace tetrace {
+
+namespace {
+
+constexpr int last_line = 255;
+
+// Rounding in the division and in line_at() must not move a line into the box.
+int line_below(const BoxGrid& grid, int axis, float x)
+{
+    int line = static_cast<int>(std::floor((double{x} - grid.origin[axis]) / grid.width(axis)));
+    line = std::clamp(line, 0, last_line);
+    while (line > 0 && line_at(grid, axis, static_cast<std::uint8_t>(line)) > x)
+        --line;
+    return line;
+}
+
+/// last_line + 1 where the grid ends before x.
+int line_above(const BoxGrid& grid, int axis, float x)
+{
+    const double line = std::ceil((double{x} - grid.origin[axis]) / grid.width(axis));
+    if (line > last_line) return last_line + 1;
+    int above = std::max(0, static_cast<int>(line));
+    while (above <= last_line && line_at(grid, axis, static_cast<std::uint8_t>(above)) < x)
+        ++above;
+    return above;
+}
+
+} // namespace
+
+double line_at(const BoxGrid& grid, int axis, std::uint8_t line)
+{
+    return double{grid.origin[axis]} + line * grid.width(axis);
+}
+
+BoxGrid make_box_grid(const Box& box)
+{
+    BoxGrid grid{box.low, {}};
+    for (int axis = 0; axis < 3; ++axis) {
+        auto& exponent = grid.exponent[static_cast<std::size_t>(axis)];
+        const double width = (double{box.high[axis]} - box.low[axis]) / last_line;
+        exponent = static_cast<std::uint8_t>(std::clamp(width > 0 ? std::ilogb(width) + 127 : 1, 1, 254));
+        while (exponent < 254 && line_above(grid, axis, box.high[axis]) > last_line)
+            ++exponent;
+    }
+    return grid;
+}
+
+GridBox to_grid(const BoxGrid& grid, const Box& box)
+{
+    GridBox lines;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto i = static_cast<std::size_t>(axis);
+        lines.low[i] = static_cast<std::uint8_t>(line_below(grid, axis, box.low[axis]));
+        lines.high[i] = static_cast<std::uint8_t>(std::min(last_line, line_above(grid, axis, box.high[axis])));
+    }
+    return lines;
+}
+
+double slot_cost(Double3 offset, std::uint32_t slot)
+{
+    return ((slot & 4) != 0 ? -offset.x : offset.x) + ((slot & 2) != 0 ? -offset.y : offset.y) +
+           ((slot & 1) != 0 ? -offset.z : offset.z);
+}
+
+// The first n children occupy a set of n slots. The best assignment to that set extends the best assignment to a subset
+// of n - 1 slots.
+std::vector<std::uint8_t> octant_slots(std::span<const Double3> offsets)
+{
+    constexpr std::uint32_t sets = 256;
+    std::array<double, sets> least = {};
+    std::array<std::uint8_t, sets> last_slot = {};
+    for (std::uint32_t taken = 1; taken < sets; ++taken) {
+        const auto child = static_cast<std::size_t>(std::popcount(taken)) - 1;
+        if (child >= offsets.size()) continue;
+        least[taken] = std::numeric_limits<double>::infinity();
+        for (std::uint32_t slot = 0; slot < 8; ++slot) {
+            if ((taken >> slot & 1) == 0) continue;
+            const double cost = least[taken & ~(1u << slot)] + slot_cost(offsets[child], slot);
+            if (cost < least[taken]) {
+                least[taken] = cost;
+                last_slot[taken] = static_cast<std::uint8_t>(slot);
+            }
+        }
+    }
+
+    std::uint32_t best = sets;
+    for (std::uint32_t taken = 0; taken < sets; ++taken)
+        if (static_cast<std::size_t>(std::popcount(taken)) == offsets.size() &&
+            (best == sets || least[taken] < least[best]))
+            best = taken;
+    std::vector<std::uint8_t> slots(offsets.size());
+    for (std::size_t child = offsets.size(); child-- > 0;) {
+        slots[child] = last_slot[best];
+        best &= ~(1u << slots[child]);
+    }
+    return slots;
+}
+
 namespace {
 
 static_assert(eight_wide.leaf_triangles == CWBVH_LEAF_TRIANGLES);

@@ -65,8 +65,8 @@ struct PackedDomain {
 [[nodiscard]] PackedDomain domain_of(const PackedScene& scene);
 
 /// Packs a scene's tets.
-/// scene: valid (see find_defect), with at most as many tets as the layout's traits allow (traits.h). layout: of tets.
-/// Throws Error{unsupported} naming both numbers where the scene has more.
+/// scene: valid (see find_defect), with at most as many tets as the layout's traits allow (LayoutTraits). layout: of
+/// tets. Throws Error{unsupported} naming both numbers where the scene has more.
 [[nodiscard]] PackedScene pack(const Scene& scene, Layout layout, TetOrder order);
 
 } // namespace tetrace

@@ -3,9 +3,8 @@
 #include "core/base/error.h"
 #include "core/base/exact.h"
 #include "core/base/random_words.h"
-#include "core/mesh/face_corners.h"
 #include "core/mesh/tet_mesh.h"
-#include "core/pack/traits.h"
+#include "core/pack/kernel_id.h"
 
 #include <array>
 #include <bit>

@@ -1,4 +1,4 @@
-// defects/: reduced kernels of defects that drivers' compilers have; core/debugging/defects.h says
+// defects/: reduced kernels of defects that drivers' compilers have; core/device/defects.h says
 // what each should return, and on which drivers it was seen. Include it after a dialect header. Defined by the entry
 // file: DEFECT_WORDS, the parameter that hands over the words that every kernel reads, DEFECT_PASSED, the argument for
 // it, and WORD(index), which reads one.

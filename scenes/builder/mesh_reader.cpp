@@ -1,6 +1,6 @@
 #include "scenes/builder/mesh_reader.h"
 
-#include "core/base/file_bytes.h"
+#include "core/base/files.h"
 #include "core/base/hash.h"
 #include "scenes/builder/mesh_source.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scenes/optimise/vertex_star.h"
+#include "scenes/optimise/vertex_move.h"
 
 namespace tetrace {
 

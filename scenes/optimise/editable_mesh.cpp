@@ -1,6 +1,6 @@
 #include "scenes/optimise/editable_mesh.h"
 
-#include "core/mesh/face_corners.h"
+#include "core/mesh/tet_mesh.h"
 #include "scenes/optimise/shape.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "scenes/optimise/insertion.h"
 
-#include "core/mesh/face_corners.h"
+#include "core/mesh/tet_mesh.h"
 #include "scenes/optimise/vertex_move.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "scenes/optimise/edge_removal.h"
-#include "scenes/optimise/vertex_star.h"
+#include "scenes/optimise/vertex_move.h"
 
 namespace tetrace {
 

@@ -1,4 +1,4 @@
-// procedural/: generators of meshes, one file each. Only + - * / and square roots of doubles, and hashes of integers,
+// Only + - * / and square roots of doubles, and hashes of integers,
 // so each mesh has the same bits on every machine.
 #pragma once
 

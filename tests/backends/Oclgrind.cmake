@@ -23,7 +23,7 @@ foreach(asked tiles persistent given search)
   set_tests_properties(${name} PROPERTIES LABELS large TIMEOUT 120)
 endforeach()
 
-# The same messages, where there is something to find: a kernel with a race and a write beyond its buffer.
+# The same messages for a kernel with a race and a write past the end of its buffer.
 if(OCLGRIND)
   file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/oclgrind_twin.cl
     "__kernel void twin(__global uint* a) { a[0] = (uint)get_global_id(0); a[get_global_id(0) + 1] = a[0]; }\n")

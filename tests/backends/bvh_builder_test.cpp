@@ -1,7 +1,7 @@
 #include "backends/embree/bvh_builder.h"
 
 #include "core/base/error.h"
-#include "core/bvh/balanced_bvh.h"
+#include "core/bvh/bvh.h"
 #include "kernels/layouts/layout.h"
 #include "scenes/procedural.h"
 #include "tests/support/bvh_meshes.h"
@@ -94,7 +94,7 @@ TEST(BvhBuilder, tree_is_cheaper_than_one_halved_by_numbers)
     EXPECT_LT(cost_of(build_bvh(mesh).bvh), 0.85 * cost_of(build_balanced_bvh(mesh)));
 }
 
-TEST(BvhBuilder, triangles_that_nothing_tells_apart_are_shared_out)
+TEST(BvhBuilder, equal_triangles_are_divided_evenly)
 {
     const TriangleMesh mesh = identical_triangles(10'000);
     const Bvh bvh = build_bvh(mesh).bvh;

@@ -1,4 +1,4 @@
-// What CUDA alone has, without a GPU: that its two stand-ins, the host emulation and a library that poses as NVIDIA's
+// What only CUDA has, without a GPU: that its two stand-ins, the host emulation and a library that poses as NVIDIA's
 // driver (tests/stub_cuda), say so; a driver's failures; NVRTC; the code that real GPUs get, which is looked at, not
 // run. device_test.cpp and the other tests of each_device.h have what is claimed of every API.
 #include "backends/cuda/driver_backend.h"
@@ -63,7 +63,7 @@ std::string assembly_of(const EmbeddedKernel& code)
     return start == std::string_view::npos ? "" : std::string(text.substr(start, text.find('\0', start) - start));
 }
 
-/// text: a kernel's source, for which `name` stands in messages.
+/// text: a kernel's source, which messages call `name`.
 std::string assembly_of_text(const std::string& text, const std::string& name, std::span<const std::string> options)
 {
     const auto made = cuda::Nvrtc::installed().compile(text.c_str(), name, "compute_90", options);
@@ -216,7 +216,7 @@ TEST_F(CudaFailures, of_a_launch_leave_no_hits_of_the_image_before)
     EXPECT_TRUE(std::all_of(hits.begin(), hits.end(), [](const Hit& hit) { return hit.face_id == POISON; }));
 }
 
-TEST_F(CudaFailures, a_lost_device_is_told_and_the_next_session_gets_a_new_context)
+TEST_F(CudaFailures, a_lost_device_is_reported_and_the_next_session_gets_a_new_context)
 {
     {
         const auto session = backend->open(0, {}, rays.data(), {});
@@ -245,7 +245,7 @@ TEST_F(CudaFailures, a_lost_context_is_lost_to_every_session_that_shares_it_and_
 
 TEST_F(CudaFailures, code_newer_than_the_driver_names_both_versions)
 {
-    if (!has_nvcc()) GTEST_SKIP() << "this build has no code of nvcc's";
+    if (!has_nvcc()) GTEST_SKIP() << "this build lacks nvcc's code";
     backend = stub_backend(programs_without_nvrtc);
     const std::string error = error_with("module", [&] { (void)backend->open(0, {}, rays.data(), {}); });
     EXPECT_TRUE(error.starts_with("unsupported: ")) << error;
@@ -294,7 +294,7 @@ TEST_F(CudaNvrtc, every_source_is_exact_in_exact_mode_and_contracts_without_its_
 {
     for (const EmbeddedKernel& source : cuda::embedded_sources()) {
         const std::string name(source.name);
-        if (name == "defects") continue; // whole numbers alone
+        if (name == "defects") continue; // only whole numbers
         auto options = cuda::compiler_options({name, MathMode::exact});
         const std::string exact = assembly_of_text(without_fused(source), name, options);
         EXPECT_TRUE(contains(exact, "div.rn.f32"));
@@ -308,7 +308,7 @@ TEST_F(CudaNvrtc, every_source_is_exact_in_exact_mode_and_contracts_without_its_
 
 TEST(CudaCode, has_machine_code_for_each_architecture)
 {
-    if (!has_nvcc()) GTEST_SKIP() << "this build has no code of nvcc's";
+    if (!has_nvcc()) GTEST_SKIP() << "this build lacks nvcc's code";
     for (const EmbeddedKernel& code : cuda::embedded_programs().code) {
         const std::string_view text = code.text();
         std::set<int> architectures;
@@ -326,11 +326,11 @@ TEST(CudaCode, has_machine_code_for_each_architecture)
 
 TEST(CudaCode, is_exact_in_exact_mode_and_contracts_in_fast_mode)
 {
-    if (!has_nvcc()) GTEST_SKIP() << "this build has no code of nvcc's";
+    if (!has_nvcc()) GTEST_SKIP() << "this build lacks nvcc's code";
     for (const EmbeddedKernel& code : cuda::embedded_programs().code) {
         const std::string assembly = assembly_of(code);
-        EXPECT_TRUE(contains(assembly, ".target sm_")) << code.name << " has no assembly for later devices";
-        if (code.name.starts_with("defects_")) continue; // whole numbers alone
+        EXPECT_TRUE(contains(assembly, ".target sm_")) << code.name << " lacks assembly for later devices";
+        if (code.name.starts_with("defects_")) continue; // only whole numbers
         const bool exact = code.name.ends_with("_exact");
         auto inexact = inexact_operations(assembly);
         if (code.name.starts_with("single_")) std::erase(inexact, "fma.rn.f32"); // of a BVH's boxes

@@ -1,7 +1,7 @@
-// Reduced kernels of compilers' defects on every device: what comes out is what tests/expected/<implementation>.json
+// Reduced kernels of compilers' defects on every device: the result is what tests/expected/<implementation>.json
 // says, right or wrong. tests/expected/README.md describes each.
-#include "core/debugging/defects.h"
 #include "core/device/backend.h"
+#include "core/device/defects.h"
 
 #include <fstream>
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ TEST(Defects, are_those_that_each_implementation_is_known_for)
                 }
                 EXPECT_EQ(expected[name], outcome)
                     << name << " on " << device.name << ", " << device.driver
-                    << ". Where it was right before, report it upstream as tests/expected/README.md describes it; "
+                    << ". If it was right before, report it upstream as tests/expected/README.md describes it; "
                     << "then correct tests/expected/" << device.implementation << ".json";
             }
         }
@@ -76,7 +76,7 @@ TEST(Defects, a_kernels_wrong_items_are_named)
         ++words[3];
         EXPECT_EQ(wrong_items(defect, words), Words{3}) << defect.name;
         words.pop_back();
-        EXPECT_EQ(wrong_items(defect, words).size(), defect_items) << "too few words are no answer";
+        EXPECT_EQ(wrong_items(defect, words).size(), defect_items) << "too few words do not count";
     }
 }
 

@@ -4,8 +4,8 @@
 #include "core/device/absent_backend.h"
 #include "core/device/device_facts.h"
 #include "core/device/launch.h"
-#include "core/device/open_checks.h"
 #include "core/device/scene_buffers.h"
+#include "core/device/session.h"
 #include "scenes/procedural.h"
 #include "tests/support/cut_anew.h"
 #include "tests/support/device_rays.h"
@@ -145,7 +145,7 @@ TEST(Devices, have_texts_that_can_be_shown)
     EXPECT_EQ(shown.reason, "two\nlines?[2J");
 }
 
-TEST(Output, is_refused_beyond_the_largest_buffer_with_both_numbers)
+TEST(Output, is_refused_over_the_largest_buffer_with_both_numbers)
 {
     EXPECT_NO_THROW(require_output_fits(250, 1000));
     EXPECT_NO_THROW(require_output_fits(1'000'000, 0));

@@ -178,7 +178,7 @@ TEST_P(GivenRays, of_bvhs_that_exceed_a_buffer_are_refused_with_both_numbers)
     const PackedScene packed = make_bvh_scene(cubes.scene.mesh, Layout::bvh2);
     const std::string bytes = std::to_string(packed.nodes.size() * sizeof(Quad));
     for (const std::size_t device : usable) {
-        if (backend.name() == openmp_backend().name()) GTEST_SKIP() << "the host has no limit";
+        if (backend.name() == openmp_backend().name()) GTEST_SKIP() << "the host is not limited";
         std::string problem;
         try {
             (void)backend.open(device, bvh_kernel(Layout::bvh2, Task::trace), {&cubes.scene.mesh, &packed},

@@ -1,5 +1,5 @@
 // On every device of every API that can be used here: sessions live side by side, their launches can be repeated, left
-// alone and read before anybody waits, and their times are times.
+// by itself and read before anybody waits, and their times are times.
 #include "core/base/stopwatch.h"
 #include "tests/backends/each_device.h"
 #include "tests/support/temporary_folder.h"
@@ -64,7 +64,7 @@ TEST_P(Devices, give_the_hits_of_single_launches_to_jobs_that_are_in_flight_toge
                     EXPECT_EQ(traced(*session, jobs), single) << name_of(kernel) << ' ' << passes;
                 }
                 const std::vector<Hit> last = traced(*session, all.back());
-                EXPECT_TRUE(std::equal(last.begin(), last.end(), single.end() - std::ssize(last))) << "again alone";
+                EXPECT_TRUE(std::equal(last.begin(), last.end(), single.end() - std::ssize(last))) << "again by itself";
             }
     }
 }

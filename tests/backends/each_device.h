@@ -13,10 +13,10 @@
 
 namespace tetrace::test {
 
-/// Before the instance is made: what Vulkan's validation layers, where they are installed, have to say fails a case.
+/// Before the instance is made: any message of Vulkan's validation layers, if they are installed, fails a case.
 [[maybe_unused]] inline const int validation_is_on = ::setenv("TETRACE_VULKAN_VALIDATION", "1", 1);
 
-/// An API, and what is claimed of it beyond what is claimed of all.
+/// An API, and what is claimed of it in addition to what is claimed of all.
 struct Api {
     std::string name;
     bool is_persistent = true; ///< it has kernels of schedule persistent

@@ -34,7 +34,7 @@ std::string rejection(std::span<const unsigned char> stream, std::size_t length)
 
 } // namespace
 
-TEST(Embedded, kernels_are_unpacked_under_their_names_with_a_0_behind_them)
+TEST(Embedded, kernels_are_unpacked_under_their_names_followed_by_a_0)
 {
     const auto stream = packed_by_xz("void first() {}void third() {}");
     const PackedKernel packed[] = {{"first", 15}, {"second", 0}, {"third", 15}};

@@ -64,7 +64,7 @@ TEST_F(Native, bvhs_hit_what_those_for_every_processor_hit)
     }
 }
 
-TEST_F(Native, is_of_openmp_alone_and_of_exact_mode)
+TEST_F(Native, exists_only_in_openmp_and_exact_mode)
 {
     KernelId kernel{.method = Method::project, .layout = Layout::half32, .schedule = Schedule::native};
     EXPECT_TRUE(openmp_backend().has_kernel(kernel));

@@ -1,4 +1,4 @@
-// What OpenCL alone has: its program cache, what its drivers say of themselves, its errors.
+// What only OpenCL has: its program cache, what its drivers say of themselves, its errors.
 // device_test.cpp and the other tests of each_device.h have what is claimed of every API.
 #include "backends/opencl/backend.h"
 #include "backends/opencl/device.h"

@@ -1,6 +1,6 @@
 // The self-test calls the host exact, and finds each way in which a device's arithmetic may differ.
 #include "backends/openmp/backend.h"
-#include "core/base/ulps.h"
+#include "core/base/exact.h"
 #include "core/device/self_test.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,4 +1,5 @@
-// The SPIR-V that devices get: nothing in exact modules may be contracted, and data lies where the host puts it.
+// The SPIR-V that devices get: nothing in exact modules may be contracted, and data is at the offsets that the host
+// uses.
 #include "backends/vulkan/kernels.h"
 #include "core/device/launch.h"
 #include "core/device/scene_buffers.h"
@@ -76,7 +77,7 @@ std::map<std::string, Array> expected_arrays(std::string_view module, bool in_pa
     return arrays;
 }
 
-/// What a kernel's texel buffers must be: words at their array's binding, quads FIRST_QUADS_BINDING behind it.
+/// What a kernel's texel buffers must be: words at their array's binding, quads FIRST_QUADS_BINDING after it.
 std::map<std::string, std::uint32_t> expected_texels(std::string_view module)
 {
     std::map<std::string, std::uint32_t> bindings;

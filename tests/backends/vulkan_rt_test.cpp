@@ -1,7 +1,6 @@
-// The driver's own BVH: where there is none the reason, else its answers by the oracle.
+// The driver's own BVH: its hits are checked by the oracle; without one, a row has the reason.
 #include "backends/vulkan/backend.h"
 #include "backends/vulkan/session.h"
-#include "bench/truth/given_oracle.h"
 #include "bench/truth/oracle.h"
 #include "core/device/given_quads.h"
 #include "tests/support/given_scene.h"
@@ -120,7 +119,7 @@ TEST(RayTracers, are_had_where_no_extension_is_missing)
     }
 }
 
-TEST(RayTracers, that_are_missing_have_a_reason_that_names_all_that_is_and_what_brings_it)
+TEST(RayTracers, that_are_missing_have_a_reason_that_names_the_package)
 {
     using vulkan::RayTracer;
     std::vector<std::string> neither = extensions_of(RayTracer::queries);
@@ -132,7 +131,7 @@ TEST(RayTracers, that_are_missing_have_a_reason_that_names_all_that_is_and_what_
     const std::string emulated = vulkan::why_no_tracer(RayTracer::queries, {}, true);
     EXPECT_TRUE(contains(emulated, "VK_KHR_acceleration_structure, VK_KHR_ray_query or VK_KHR_ray_tracing_pipeline, "))
         << emulated;
-    EXPECT_TRUE(contains(emulated, "mesa-vulkan-drivers")) << "what brings it: " << emulated;
+    EXPECT_TRUE(contains(emulated, "mesa-vulkan-drivers")) << "the package that has it: " << emulated;
     std::vector<std::string> partial = extensions_of(RayTracer::pipeline);
     std::erase(partial, "VK_KHR_deferred_host_operations");
     EXPECT_TRUE(contains(vulkan::why_no_tracer(RayTracer::pipeline, partial, false),
@@ -191,7 +190,7 @@ TEST_P(VulkanRt, given_rays_of_every_kind_are_answered_as_the_oracle_does)
     }
 }
 
-TEST_P(VulkanRt, rays_end_where_they_are_told_to_and_any_hit_tells_whether_there_is_one)
+TEST_P(VulkanRt, rays_end_at_their_end_and_any_hit_says_whether_there_is_one)
 {
     const GivenScene given(64, true);
     RaySet set = make_rays(RayKind::diffuse, given.source());

@@ -1,4 +1,4 @@
-// What Vulkan alone has: its program cache, staging, texels, validation layers, limits, timestamps, errors.
+// What only Vulkan has: its program cache, staging, texels, validation layers, limits, timestamps, errors.
 // device_test.cpp and the other tests of each_device.h have what is claimed of every API.
 #include "backends/vulkan/backend.h"
 #include "backends/vulkan/context.h"
@@ -43,7 +43,7 @@ TEST_F(Vulkan, a_program_cache_changes_no_hit_and_is_filled)
     }
 }
 
-TEST_F(Vulkan, an_allocation_beyond_the_devices_largest_is_refused_with_both_numbers)
+TEST_F(Vulkan, an_allocation_over_the_devices_largest_is_refused_with_both_numbers)
 {
     for (vulkan::FoundDevice found : vulkan::find_devices()) {
         if (!found.facts.usable) continue;
@@ -100,7 +100,7 @@ TEST_F(Vulkan, rays_left_at_ties_get_openmps_hits)
             if (!found.facts.usable) continue;
             found.reads_texels = true; // the programs that leave ties
             vulkan::VulkanSession session(found, kernel, rays.packed(), {});
-            // More than a group of them in an image, none, then more again; at last from inside, where none is left.
+            // More than a group of them in an image, none, then more again; at last from inside, with none left.
             std::vector<TraceJob> jobs = {along_lines(17, 17, {0.25f, 0, 3}), rays.from_outside(7, 3),
                                           between_lines(50, 41), along_lines(50, 41, {0, 0, 4}),
                                           rays.from_inside(20, 20)};
@@ -114,7 +114,7 @@ TEST_F(Vulkan, rays_left_at_ties_get_openmps_hits)
 
 namespace {
 
-/// Calls expect_right with every usable device, told to be as emulated devices are and as others are.
+/// Calls expect_right with every usable device, once as an emulated device and once as another.
 void with_devices_of_all_kinds(const std::function<void(const vulkan::FoundDevice&)>& expect_right)
 {
     for (vulkan::FoundDevice found : vulkan::find_devices()) {
@@ -180,7 +180,7 @@ TEST_F(Vulkan, hits_of_bvhs_are_openmps_however_much_of_a_stack_is_in_the_groups
             for (const unsigned stack_top : {0u, 1u, STACK_TOP_OF_GPUS})
                 for (const unsigned tile_height : {4u, 8u}) {
                     if (!found.facts.usable) continue;
-                    found.reads_texels = false; // modules that read texels have no STACK_TOP
+                    found.reads_texels = false; // modules that read texels lack STACK_TOP
                     found.stack_top = stack_top;
                     vulkan::VulkanSession session(found, stacks.kernel, stacks.full.packed,
                                                   {.tile_height = tile_height});
@@ -285,7 +285,7 @@ TEST(VulkanImplementation, only_lavapipe_before_mesa_25_limits_the_steps_of_a_wa
         EXPECT_EQ(vulkan::max_steps_of(free), 0u) << free;
 }
 
-TEST(VulkanImplementation, hardware_that_radv_invents_is_told_from_hardware)
+TEST(VulkanImplementation, hardware_that_radv_invents_is_distinguished_from_hardware)
 {
     ::unsetenv("RADV_FORCE_FAMILY");
     EXPECT_TRUE(vulkan::is_null_hardware("radv-22.3", "Null hardware (RADV GFX1100)"));
@@ -296,7 +296,7 @@ TEST(VulkanImplementation, hardware_that_radv_invents_is_told_from_hardware)
     ::unsetenv("RADV_FORCE_FAMILY");
 }
 
-TEST(VulkanLimits, each_is_told_with_its_number)
+TEST(VulkanLimits, each_is_reported_with_its_number)
 {
     const vulkan::Limits good{VK_API_VERSION_1_1, 0, 64, 128, 13, 128, 128, 65535, 1u << 30};
     const auto reason = [&](auto member, auto value) {

@@ -1,4 +1,4 @@
-#include "core/bvh/box_grid.h"
+#include "core/pack/pack_cwbvh.h"
 
 #include "tests/support/random.h"
 

@@ -76,7 +76,7 @@ TEST(Camera, pixels_span_60_degrees_through_their_centres)
     const auto direction = [&](double x, double y) {
         return to_double(view.corner) + to_double(view.step_x) * x + to_double(view.step_y) * y;
     };
-    // The image's middle lies between four pixels; half a pixel beyond the outermost centres are 30 degrees to each
+    // The image's middle is between four pixels; half a pixel outside the outermost centres are 30 degrees to each
     // side.
     EXPECT_NEAR(length(direction(511.5, 255.5) - camera.forward), 0, 1e-6);
     EXPECT_NEAR(dot(direction(-0.5, 255.5), camera.right), -0.57735026919, 1e-6);

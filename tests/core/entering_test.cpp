@@ -22,7 +22,7 @@ std::uint64_t walked(const std::vector<Hit>& hits)
 TEST(Entering, rays_enter_if_they_have_a_point_inside_ahead_of_them_and_before_their_end)
 {
     EXPECT_TRUE(enters(unit_box, {-1, 0.5, 0.5}, {1, 0, 0}));
-    EXPECT_FALSE(enters(unit_box, {-1, 0.5, 0.5}, {-1, 0, 0})) << "it is behind";
+    EXPECT_FALSE(enters(unit_box, {-1, 0.5, 0.5}, {-1, 0, 0})) << "the box is in the other direction";
     EXPECT_FALSE(enters(unit_box, {-1, 0.5, 0.5}, {1, 2, 0})) << "it passes by";
     EXPECT_TRUE(enters(unit_box, {0.5, 0.5, 0.5}, {0, 0, -1})) << "from inside";
     EXPECT_FALSE(enters(unit_box, {-1, 1, 0.5}, {1, 0, 0})) << "along a side";

@@ -1,7 +1,7 @@
 #include "core/mesh/entry_grid.h"
 
 #include "core/base/error.h"
-#include "core/mesh/face_corners.h"
+#include "core/mesh/tet_mesh.h"
 #include "scenes/procedural.h"
 #include "tests/support/cut_anew.h"
 #include "tests/support/random.h"
@@ -39,7 +39,7 @@ double depth_in(const TetMesh& mesh, std::uint32_t half_face, Double3 point)
     return least;
 }
 
-/// A point of a square, numbered within its side, or up to `reach` beyond its outline.
+/// A point of a square, numbered within its side, or up to `reach` outside its outline.
 Double3 point_near(const Domain& domain, std::uint32_t side, std::uint32_t square, double reach, Random& random)
 {
     const std::uint32_t across = side / 2, n = domain.divisions;
@@ -118,7 +118,7 @@ TEST(EntryGrid, lists_no_face_that_is_far_from_a_square)
     const Scene scene = make_cubes(8);
     const EntryGrid grid = make_entry_grid(cut_anew(scene.domain, 4), scene.tets);
     for (std::size_t square = 0; square < 6u * 4 * 4; ++square)
-        EXPECT_LE(list_of(grid, square).size(), 32u) << "those of four cubes and of the twelve round them";
+        EXPECT_LE(list_of(grid, square).size(), 32u) << "those of four cubes and of the twelve around them";
 }
 
 TEST(EntryGrid, begins_a_list_with_the_face_that_covers_most_of_the_square)
@@ -148,7 +148,7 @@ TEST(EntryGrid, a_boundary_face_inside_the_domain_is_refused)
     EXPECT_THROW((void)make_entry_grid(scene.domain, scene.tets), Error);
 }
 
-TEST(EntryGrid, a_boundary_face_that_reaches_beyond_its_side_is_refused)
+TEST(EntryGrid, a_boundary_face_that_reaches_outside_its_side_is_refused)
 {
     Scene scene = make_cubes(2);
     for (float& line : scene.domain.lines[1])

@@ -73,7 +73,7 @@ TEST(Exact, orientation_agrees_with_rational_arithmetic_on_near_degenerate_point
     EXPECT_GT(flat, 0) << "no flat case was among them";
 }
 
-TEST(Exact, crossing_tells_inside_edge_vertex_outside_and_behind)
+TEST(Exact, crossing_distinguishes_inside_edge_vertex_outside_and_before_the_origin)
 {
     const Float3 a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0};
     const Float3 down{0, 0, -1};
@@ -82,12 +82,12 @@ TEST(Exact, crossing_tells_inside_edge_vertex_outside_and_behind)
     EXPECT_DOUBLE_EQ(at(0.25f, 0.25f).t, 1.0);
     EXPECT_TRUE(at(0.5f, 0.5f).met) << "on an edge";
     EXPECT_TRUE(at(0, 0).met) << "on a vertex";
-    EXPECT_FALSE(at(0.5f, 0x1.000002p-1f).met) << "one ulp beyond the edge";
-    EXPECT_FALSE(at(0.25f, 0.25f, -1).met) << "behind the origin";
+    EXPECT_FALSE(at(0.5f, 0x1.000002p-1f).met) << "one ulp outside the edge";
+    EXPECT_FALSE(at(0.25f, 0.25f, -1).met) << "before the origin";
     EXPECT_FALSE(cross_exactly({0.25f, -1, 0}, {0, 1, 0}, a, b, c).met) << "in the triangle's plane";
 }
 
-TEST(Exact, distances_compare_beyond_double)
+TEST(Exact, distances_compare_with_more_than_double)
 {
     const Float3 near[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     const Float3 far[3] = {{0, 0, -0x1p-40f}, {1, 0, 0}, {0, 1, 0}}; // differs by a grid step at one corner

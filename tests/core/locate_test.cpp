@@ -70,7 +70,7 @@ TEST(Locate, finds_a_tet_for_every_vertex_and_edge_midpoint)
     }
 }
 
-TEST(Locate, points_beyond_the_domain_have_no_tet)
+TEST(Locate, points_outside_the_domain_have_no_tet)
 {
     const Float3 high = scene().domain.high();
     EXPECT_EQ(locate(scene().tets, {high.x + 0x1p-20f, high.y, high.z}), NO_TET);

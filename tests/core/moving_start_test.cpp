@@ -1,4 +1,4 @@
-#include "core/mesh/moving_start.h"
+#include "core/mesh/locate.h"
 
 #include "core/base/exact.h"
 #include "scenes/procedural.h"
@@ -98,7 +98,7 @@ TEST(MovingStart, each_start_is_that_of_exact_location)
         const Float3 origin = on_curve(static_cast<float>(i) / 500);
         ASSERT_EQ(camera.next(origin), find_start(scene(), origin)) << i;
     }
-    EXPECT_EQ(camera.counts().located, 1u) << "the first alone";
+    EXPECT_EQ(camera.counts().located, 1u) << "only the first";
     EXPECT_EQ(camera.counts().walked, 500u);
     EXPECT_GT(camera.counts().steps, 0u);
     EXPECT_LT(camera.counts().max_steps, camera.counts().steps);
@@ -122,7 +122,7 @@ TEST(MovingStart, small_moves_take_few_steps)
     EXPECT_LT(3 * camera.counts().steps, far.counts().steps);
 }
 
-TEST(MovingStart, a_move_beyond_the_maximal_distance_is_no_walk)
+TEST(MovingStart, a_move_over_the_maximum_distance_is_not_walked)
 {
     const Float3 from = on_curve(0), to = on_curve(1);
     const double distance = length(to_double(to) - to_double(from));

@@ -1,4 +1,4 @@
-#include "core/pack/octant_slots.h"
+#include "core/pack/pack_cwbvh.h"
 
 #include "tests/support/random.h"
 
@@ -46,7 +46,7 @@ TEST(OctantSlots, no_assignment_costs_less)
     }
 }
 
-TEST(OctantSlots, each_child_has_a_slot_of_its_own)
+TEST(OctantSlots, each_child_has_its_own_slot)
 {
     Random random(12);
     for (std::size_t count = 0; count <= 8; ++count) {

@@ -1,7 +1,7 @@
 // Tets that share their vertices: what is packed comes back, word for word, and what cannot be walked is refused.
 #include "core/base/error.h"
-#include "core/pack/pack_compact.h"
-#include "core/pack/traits.h"
+#include "core/pack/kernel_id.h"
+#include "core/pack/packed_scene.h"
 #include "scenes/procedural.h"
 #include "tests/support/unpack.h"
 
@@ -24,7 +24,7 @@ Place place_of(const TetMesh& mesh, std::uint32_t vertex)
     return {mesh.vertices[vertex].x, mesh.vertices[vertex].y, mesh.vertices[vertex].z};
 }
 
-/// What is opposite each vertex of a tet: the tet behind, and the triangle.
+/// What is opposite each vertex of a tet: the neighbour, and the triangle.
 std::map<Place, std::pair<std::uint32_t, std::uint32_t>> faces_of(const TetMesh& mesh, const Tet& tet,
                                                                   const std::vector<std::uint32_t>& number_of_tet)
 {

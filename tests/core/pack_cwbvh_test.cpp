@@ -1,9 +1,9 @@
 #include "core/pack/pack_bvh.h"
 
 #include "backends/embree/bvh_builder.h"
-#include "core/bvh/box_grid.h"
-#include "core/bvh/single_leaves.h"
+#include "core/bvh/bvh.h"
 #include "core/bvh/wide_bvh.h"
+#include "core/pack/pack_cwbvh.h"
 #include "kernels/layouts/layout.h"
 #include "scenes/procedural.h"
 #include "tests/support/bvh_meshes.h"

@@ -2,7 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/pack/hilbert.h"
-#include "core/pack/traits.h"
+#include "core/pack/kernel_id.h"
 #include "scenes/procedural.h"
 #include "tests/support/unpack.h"
 
@@ -113,8 +113,8 @@ TEST(Pack, hilbert_order_has_no_long_jumps)
     EXPECT_LT(longest_jump(TetOrder::hilbert), 0.5 * longest_jump(TetOrder::input));
 }
 
-// A tet is followed by its neighbour behind its largest free face of those that are not placed yet.
-TEST(Pack, chains_go_on_behind_the_largest_free_face_and_begin_along_the_curve)
+// A tet is followed by its neighbour across its largest free face of those that are not placed yet.
+TEST(Pack, chains_continue_across_the_largest_free_face_and_begin_along_the_curve)
 {
     const Scene scene = make_cubes(9);
     const TetMesh mesh = unpack(pack(scene, Layout::tet80, TetOrder::chains));
@@ -148,7 +148,7 @@ TEST(Pack, chains_go_on_behind_the_largest_free_face_and_begin_along_the_curve)
     EXPECT_EQ(first_of(TetOrder::chains), first_of(TetOrder::hilbert));
 }
 
-// cubes are closed surfaces: a part of the tets lies inside them.
+// cubes are closed surfaces: a part of the tets is inside them.
 TEST(Pack, tets_that_no_ray_reaches_come_last_in_order_reached_and_in_chains)
 {
     const Scene scene = make_cubes(12);
@@ -206,7 +206,7 @@ TEST(Pack, no_word_of_a_record_may_contradict_the_others)
 }
 
 // Compilers compute with the fourth word of a quad as with the three coordinates before it.
-TEST(Pack, no_word_beside_coordinates_is_denormal_as_a_float)
+TEST(Pack, only_coordinates_are_denormal_as_floats)
 {
     const Scene scene = make_cubes(4);
     const auto expect_no_denormal = [](const std::vector<Quad>& quads, std::size_t stride) {

@@ -27,7 +27,7 @@ TEST(Printable, replaces_bytes_that_are_not_utf_8)
     EXPECT_EQ(printable_line("\xc0\xaf"), "??") << "overlong";
     EXPECT_EQ(printable_line("\xe0\x80\xaf"), "???") << "overlong";
     EXPECT_EQ(printable_line("\xed\xa0\x80"), "???") << "a surrogate";
-    EXPECT_EQ(printable_line("\xf4\x90\x80\x80"), "????") << "beyond Unicode";
+    EXPECT_EQ(printable_line("\xf4\x90\x80\x80"), "????") << "past the end of Unicode";
     EXPECT_EQ(printable_line("cut \xe4\xb8"), "cut ??");
     EXPECT_EQ(printable_line("\xef\xbf\xbe|\xef\xbf\xbf"), "?|?") << "no characters";
 }

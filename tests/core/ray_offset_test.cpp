@@ -1,4 +1,4 @@
-#include "core/rays/ray_offset.h"
+#include "core/rays/ray_start.h"
 
 #include "core/base/error.h"
 #include "core/base/exact.h"
@@ -68,7 +68,7 @@ TEST(RayOffset, every_ray_starts_on_its_side_of_the_exact_triangle)
             ASSERT_EQ(side(offset_origin(ray, mesh)), side(ahead));
             behind_before += side(ray.origin) != side(ahead);
         }
-    EXPECT_GT(behind_before, 100) << "without the offset, about half start behind their triangle";
+    EXPECT_GT(behind_before, 100) << "without the offset, about half start on the wrong side of their triangle";
 }
 
 TEST(GivenRows, hold_the_rays_with_links_as_the_scene_is_packed)

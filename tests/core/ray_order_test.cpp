@@ -69,7 +69,7 @@ TEST(RayOrder, tiles_are_those_of_8_by_8_pixels)
 
 TEST(RayOrder, morton_is_more_coherent_than_tiles_and_shuffled_less)
 {
-    // Random rays have no order as they are made.
+    // Random rays are made without an order.
     const double morton = mean_jump(arranged(RayKind::random, RayOrder::morton));
     const double tiles = mean_jump(arranged(RayKind::random, RayOrder::tiles));
     EXPECT_LT(morton, 0.75 * tiles);

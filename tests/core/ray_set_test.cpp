@@ -4,7 +4,7 @@
 #include "core/base/exact.h"
 #include "core/base/hash.h"
 #include "core/base/random_words.h"
-#include "core/mesh/face_corners.h"
+#include "core/mesh/tet_mesh.h"
 #include "core/rays/ray_start.h"
 #include "tests/support/given_scene.h"
 #include "tests/support/random.h"
@@ -26,7 +26,7 @@ namespace {
 constexpr RayKind all_kinds[] = {RayKind::primary, RayKind::shadow, RayKind::ao, RayKind::diffuse, RayKind::random};
 constexpr RayKind secondary_kinds[] = {RayKind::shadow, RayKind::ao, RayKind::diffuse};
 
-// Made once: most cases read it alone.
+// Made once: most cases only read it.
 const GivenScene& outside()
 {
     static const GivenScene made;

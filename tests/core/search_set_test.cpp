@@ -1,5 +1,5 @@
-// The tets and rays of exit searches alone: each ray enters its tet by the face that it says, and leaves by those that
-// another exact arithmetic finds; a wrong face is told from one within rounding.
+// The tets and rays of exit searches: each ray enters its tet by the face that it says, and leaves by those that
+// another exact arithmetic finds; a wrong face is distinguished from one within rounding.
 #include "backends/openmp/backend.h"
 #include "core/base/exact.h"
 #include "core/base/hash.h"

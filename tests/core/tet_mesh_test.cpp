@@ -95,7 +95,7 @@ TEST(TetMesh, neighbours_that_share_other_vertices_are_found)
               Kind::asymmetric_neighbour);
 }
 
-TEST(TetMesh, an_inverted_and_a_flat_tet_are_told_apart)
+TEST(TetMesh, an_inverted_and_a_flat_tet_are_distinguished)
 {
     // Two vertices change places, with their faces: half-faces stay symmetric, only the orientation turns.
     EXPECT_EQ(defect_after([](Scene& s) {
@@ -142,7 +142,7 @@ TEST(TetMesh, tets_that_do_not_fill_the_domain_are_found)
     EXPECT_EQ(gap_after([](Scene& s) { s.domain.lines[0].back() += 0.01f; }), Kind::open_boundary);
 }
 
-TEST(TetMesh, tets_are_reached_through_free_faces_alone)
+TEST(TetMesh, tets_are_reached_only_through_free_faces)
 {
     TetMesh mesh = make_cubes(3).tets;
     for (Tet& tet : mesh.tets)

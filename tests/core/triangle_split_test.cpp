@@ -1,4 +1,4 @@
-#include "core/bvh/triangle_split.h"
+#include "core/bvh/bvh.h"
 
 #include "tests/support/random.h"
 
@@ -52,7 +52,7 @@ TEST(TriangleSplit, parts_stay_on_their_side_and_in_the_box)
     }
 }
 
-// What a cut of the triangle's box alone would not give: the parts of a diagonal one are smaller along the other axes.
+// What a cut of only the triangle's box would not give: the parts of a diagonal one are smaller along the other axes.
 TEST(TriangleSplit, the_triangle_is_cut_and_not_its_box)
 {
     const Float3 corners[3] = {{0, 0, 0}, {1, 1, 0}, {1, 1, 1}};

@@ -1,6 +1,5 @@
-#include "core/base/whole_file.h"
+#include "core/base/files.h"
 
-#include "core/base/file_bytes.h"
 #include "tests/support/temporary_folder.h"
 
 #include <csignal>
@@ -15,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// While it lives, this process can write no file longer than so many bytes, as if the disk were full.
+/// While it lives, this process cannot write a file longer than that many bytes, as if the disk were full.
 class ShortFiles {
 public:
     explicit ShortFiles(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN))

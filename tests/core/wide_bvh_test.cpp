@@ -1,7 +1,7 @@
 #include "core/bvh/wide_bvh.h"
 
 #include "backends/embree/bvh_builder.h"
-#include "core/bvh/single_leaves.h"
+#include "core/bvh/bvh.h"
 #include "scenes/procedural.h"
 #include "tests/support/bvh_meshes.h"
 
@@ -33,7 +33,7 @@ TEST(SingleLeaves, the_tree_stays_whole_and_its_leaves_have_one_triangle)
     for (const auto& node : bvh.nodes) {
         if (node.count == 0) continue;
         EXPECT_EQ(node.count, 1u);
-        EXPECT_EQ(node.first, next++) << "references stand in the order of the leaves";
+        EXPECT_EQ(node.first, next++) << "references are in the order of the leaves";
     }
 }
 

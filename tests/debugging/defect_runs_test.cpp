@@ -1,5 +1,4 @@
 #include "bench/debugging/defect_report.h"
-#include "bench/debugging/defect_run.h"
 #include "core/device/device_facts.h"
 #include "tests/support/fake_backend.h"
 #include "tests/support/temporary_folder.h"

@@ -111,5 +111,5 @@ TEST_F(Dump, of_what_has_no_files_is_refused)
     EXPECT_EQ(run("dump --out out").code, 2) << "no backend";
     EXPECT_EQ(run("dump --backend cuda,vulkan --out out").code, 2) << "two backends";
     write_file(folder_ / "file", "");
-    EXPECT_EQ(run("dump --backend cuda --out file").code, 2) << "a file is no folder";
+    EXPECT_EQ(run("dump --backend cuda --out file").code, 2) << "a file is not a folder";
 }

@@ -1,14 +1,13 @@
 #include "bench/debugging/ray_steps.h"
 
-#include "bench/debugging/device_products.h"
-#include "bench/debugging/trace_report.h"
+#include "bench/debugging/trace_run.h"
 #include "bench/measuring/ray_walks.h"
 #include "bench/measuring/view_recorder.h"
 #include "bench/output/check_matrix.h"
 #include "bench/output/row_fields.h"
 #include "bench/rows/scene_work.h"
 #include "core/device/self_test.h"
-#include "core/mesh/face_corners.h"
+#include "core/mesh/tet_mesh.h"
 #include "tests/support/row_runs.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/wrapped_session.h"
@@ -26,7 +25,7 @@ namespace {
 
 constexpr ImagePixel pixel{12, 11};
 
-/// Answers as openmp does, but the walk of every ray that is cut off after so many steps is in another tet.
+/// Answers as openmp does, but the walk of every ray that is cut off after that many steps is in another tet.
 class StrayingSession : public WrappedSession {
 public:
     StrayingSession(std::unique_ptr<Session> inner, std::uint32_t step) : WrappedSession(std::move(inner)), step_(step)
@@ -308,7 +307,7 @@ TEST(DeviceProducts, are_what_float_arithmetic_gives_and_follow_a_device_that_co
     EXPECT_TRUE(side_products(origin, direction, {}, openmp).empty());
 }
 
-TEST_F(RaySteps, that_need_the_rays_neighbours_are_told_from_those_that_do_not)
+TEST_F(RaySteps, that_need_the_rays_neighbours_are_distinguished_from_those_that_do_not)
 {
     RowRun crowded = row();
     crowded.session = std::make_unique<CrowdedSession>(std::move(crowded.session));

@@ -1,8 +1,8 @@
 // Meshes, scenes and archives.
 #include "core/base/hash.h"
 #include "core/mesh/scene.h"
-#include "scenes/archive.h"
 #include "scenes/builder/mesh_reader.h"
+#include "scenes/mesh_files.h"
 #include "scenes/scene_file.h"
 #include "tests/fuzz/memory_file.h"
 #include "tests/fuzz/targets.h"

@@ -5,7 +5,7 @@
 
 using namespace tetrace::fuzz;
 
-TEST(FuzzFiles, no_changed_input_brings_a_reader_down)
+TEST(FuzzFiles, no_changed_input_crashes_a_reader)
 {
     for (const Target& target : file_targets()) {
         SCOPED_TRACE(target.name);
@@ -14,7 +14,7 @@ TEST(FuzzFiles, no_changed_input_brings_a_reader_down)
 }
 
 // Were it of another version of the format, every change of it would be refused at the first bytes.
-TEST(FuzzFiles, the_scene_of_the_corpus_is_read_as_it_is)
+TEST(FuzzFiles, the_scene_of_the_corpus_is_read_unchanged)
 {
     for (const Target& target : file_targets()) {
         if (std::string_view(target.name) != "tet") continue;

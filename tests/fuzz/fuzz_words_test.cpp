@@ -3,7 +3,7 @@
 
 using namespace tetrace::fuzz;
 
-TEST(FuzzWords, no_changed_input_brings_a_reader_down)
+TEST(FuzzWords, no_changed_input_crashes_a_reader)
 {
     for (const Target& target : word_targets()) {
         SCOPED_TRACE(target.name);

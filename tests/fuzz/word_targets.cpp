@@ -6,7 +6,7 @@
 #include "bench/options/options.h"
 #include "bench/report/png.h"
 #include "bench/results/result_file.h"
-#include "bench/results/result_text.h"
+#include "bench/results/result_value.h"
 #include "core/isolation/messages.h"
 #include "tests/fuzz/memory_file.h"
 #include "tests/fuzz/targets.h"

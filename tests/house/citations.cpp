@@ -67,14 +67,14 @@ bool is_letter_of_a_page(const Claims& claims, char letter)
     return is_claim(claims, std::string(1, letter) + "1");
 }
 
-/// What is wrong with "page, P1 and P2": `numbers` is the text behind the page's name.
+/// What is wrong with "page, P1 and P2": `numbers` is the text after the page's name.
 std::vector<std::string> wrong_with(const Claims& claims, const std::string& page, const std::string& numbers)
 {
     static const std::regex number("[A-Z][0-9]+");
-    if (!claims.contains(page)) return {"there is no page " + spec + page};
+    if (!claims.contains(page)) return {"the page " + spec + page + " is missing"};
     std::vector<std::string> problems;
     for_each_match(numbers, number, [&](const Match& match) {
-        if (!claims.at(page).contains(match.str())) problems.push_back(page + " has no claim " + match.str());
+        if (!claims.at(page).contains(match.str())) problems.push_back(page + " lacks claim " + match.str());
     });
     return problems;
 }

@@ -64,10 +64,10 @@ TEST(Citations, of_missing_pages_and_claims_are_found)
 {
     const auto problems = [](const std::string& text) { return joined(broken_citations(with_text("core/a.h", text))); };
     EXPECT_EQ(problems("// " + cited + "page.md, P1 and P2; " + cited + "page.md"), "");
-    EXPECT_EQ(problems("// " + cited + "other.md"), "core/a.h: there is no page " + cited + "other.md\n");
-    EXPECT_EQ(problems("// " + cited + "page.md, P3"), "core/a.h: page.md has no claim P3\n");
-    EXPECT_EQ(problems("// (" + cited + "page.md,\n    // P1 and P4)"), "core/a.h: page.md has no claim P4\n");
-    EXPECT_EQ(problems("\"" + cited + "page.md, \"\n  \"P5\""), "core/a.h: page.md has no claim P5\n");
+    EXPECT_EQ(problems("// " + cited + "other.md"), "core/a.h: the page " + cited + "other.md is missing\n");
+    EXPECT_EQ(problems("// " + cited + "page.md, P3"), "core/a.h: page.md lacks claim P3\n");
+    EXPECT_EQ(problems("// (" + cited + "page.md,\n    // P1 and P4)"), "core/a.h: page.md lacks claim P4\n");
+    EXPECT_EQ(problems("\"" + cited + "page.md, \"\n  \"P5\""), "core/a.h: page.md lacks claim P5\n");
 }
 
 TEST(Citations, within_the_specification_are_held_to_its_claims_too)

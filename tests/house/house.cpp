@@ -75,7 +75,7 @@ bool House::allows(const std::string& from, const std::string& to) const
     return std::ranges::any_of(arrows_.at(*line_of(from)), [&](const std::string& arrow) { return covers(arrow, to); });
 }
 
-std::string House::room_of(const std::string& file) const
+std::string House::listed_folder(const std::string& file) const
 {
     for (fs::path folder = fs::path(file).parent_path(); !folder.empty(); folder = folder.parent_path())
         if (line_of(folder.string()) != nullptr) return folder.string();
@@ -86,11 +86,11 @@ std::vector<std::string> House::forbidden(const std::vector<Include>& includes) 
 {
     std::vector<std::string> problems;
     for (const Include& include : includes) {
-        const std::string from = room_of(include.from), to = room_of(include.to);
+        const std::string from = listed_folder(include.from), to = listed_folder(include.to);
         if (include.from.starts_with("tests/")) continue; // a test may include everything
         if (!from.empty() && (from == to || allows(from, to))) continue;
         problems.push_back(include.from + " includes " + include.to + ": " + from + " -> " + to +
-                           " is no arrow of the house");
+                           " is not an allowed include (tests/house/arrows.txt)");
     }
     return problems;
 }
@@ -99,7 +99,8 @@ std::vector<std::string> House::unused(const std::vector<Include>& includes) con
 {
     std::set<std::pair<std::string, std::string>> needed;
     for (const Include& include : includes)
-        if (const std::string* line = line_of(room_of(include.from))) needed.insert({*line, room_of(include.to)});
+        if (const std::string* line = line_of(listed_folder(include.from)))
+            needed.insert({*line, listed_folder(include.to)});
     std::vector<std::string> arrows;
     for (const auto& [from, list] : arrows_)
         for (const std::string& arrow : list)

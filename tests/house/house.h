@@ -22,15 +22,15 @@ struct Sources {
 /// Reads kernels, core, scenes, backends, bench and tests below a root.
 [[nodiscard]] Sources read_sources(const std::filesystem::path& root);
 
-/// The house: which folder may include which. A folder that is not listed is a part of the listed one that it lies in.
+/// Which folder may include which. A folder that is not listed is a part of the listed one that contains it.
 class House {
 public:
     /// Reads lines "folder -> folder folder ..."; "core/*" means every folder below core, and before the arrow each
-    /// folder in core that has no line of its own. A '#' begins a comment.
+    /// folder in core without a line of its own. A '#' begins a comment.
     explicit House(const std::filesystem::path& table);
 
-    /// The listed folder that a file lies in; empty if there is none.
-    [[nodiscard]] std::string room_of(const std::string& file) const;
+    /// The listed folder that contains a file; empty without one.
+    [[nodiscard]] std::string listed_folder(const std::string& file) const;
     /// "a.cpp includes b.h: core/base -> core/rays is not an arrow of the house" for each include without an arrow.
     [[nodiscard]] std::vector<std::string> forbidden(const std::vector<Include>& includes) const;
     /// "core/base -> core/rays" for each arrow that no include needs.

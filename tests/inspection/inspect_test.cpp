@@ -129,7 +129,7 @@ json figures_of(const json& program)
     return figures;
 }
 
-/// What is expected of a version of a compiler; null if it has no file.
+/// What is expected of a version of a compiler; null without a file.
 json expected_of(const std::string& compiler)
 {
     std::ifstream stream(std::filesystem::path(TETRACE_EXPECTED_FOLDER) / ("inspect-" + compiler + ".json"));
@@ -185,7 +185,7 @@ void expect_known_figures(const std::string& target, const json& programs)
     std::string changes;
     for (const auto& [name, before] : expected.items())
         if (!figures.contains(name))
-            changes += name + ": there is no such program\n";
+            changes += name + ": this program is missing\n";
         else if (figures[name] != before)
             changes += fmt::format("{}: {}, expected {}\n", name, figures[name].dump(), before.dump());
     const std::string where = fmt::format("\"programs\" of tests/expected/inspect-{}.json would have\n", compiler);
@@ -311,5 +311,5 @@ TEST_F(Inspect, null_hardware_is_compile_only_and_nothing_is_run_on_it)
     if (!is_here) GTEST_SKIP() << "no RADV here; install mesa-vulkan-drivers";
     EXPECT_TRUE(check.code == 0 || check.code == 3) << check.errors;
     EXPECT_EQ(check.out.find("vkCreateFence"), std::string::npos) << check.out;
-    EXPECT_EQ(check.out.find("Null hardware"), std::string::npos) << "it has no rows";
+    EXPECT_EQ(check.out.find("Null hardware"), std::string::npos) << "it is without rows";
 }

@@ -1,8 +1,7 @@
 // What `inspect` reads from code and from compilers' messages: a wrong answer here would prove what is not so.
+#include "bench/inspection/inspected.h"
 #include "bench/inspection/machine_code.h"
 #include "bench/inspection/nvcc.h"
-#include "bench/inspection/occupancy.h"
-#include "bench/inspection/target.h"
 #include "core/base/error.h"
 
 #include <gtest/gtest.h>

@@ -33,7 +33,7 @@ protected:
 
 TEST_F(DriverFaults, opencl_that_crashes_at_load_is_named_and_vulkans_matrix_is_whole)
 {
-    if (!has("vulkan")) GTEST_SKIP() << "there is no Vulkan device";
+    if (!has("vulkan")) GTEST_SKIP() << "a Vulkan device is missing";
     const std::string check = "check --backend opencl,vulkan --scene cubes --resolution 4 --size 16 --camera-set smoke "
                               "--threads 2 --views 0 ";
     break_opencl();
@@ -54,7 +54,7 @@ TEST_F(DriverFaults, opencl_that_crashes_at_load_is_named_and_vulkans_matrix_is_
     EXPECT_EQ(cases_of("<error "), cases_of("classname=\"tetrace.opencl"));
 }
 
-TEST_F(DriverFaults, devices_are_listed_beside_a_driver_that_crashes_at_load)
+TEST_F(DriverFaults, devices_are_listed_next_to_a_driver_that_crashes_at_load)
 {
     break_opencl();
     const ScopedVariable broken("OCL_ICD_VENDORS", vendors());
@@ -69,7 +69,7 @@ TEST_F(DriverFaults, devices_are_listed_beside_a_driver_that_crashes_at_load)
 #ifdef TETRACE_FAULTY_OPENCL
 TEST_F(DriverFaults, driver_that_ends_at_any_call_ends_its_row_and_openmps_goes_on)
 {
-    if (!has("opencl")) GTEST_SKIP() << "there is no OpenCL device";
+    if (!has("opencl")) GTEST_SKIP() << "an OpenCL device is missing";
     const struct {
         const char *fault, *reason;
     } faults[] = {
@@ -89,7 +89,7 @@ TEST_F(DriverFaults, driver_that_ends_at_any_call_ends_its_row_and_openmps_goes_
 
 TEST_F(DriverFaults, what_a_driver_reports_has_the_status_that_it_has_without_isolation)
 {
-    if (!has("opencl")) GTEST_SKIP() << "there is no OpenCL device";
+    if (!has("opencl")) GTEST_SKIP() << "an OpenCL device is missing";
     for (const char* fault : {"launch:3 out-of-memory", "launch:3 lost"}) {
         const Ended apart = run_faulty(fault, "check --views 0 --layout tet80");
         const Ended within = run_faulty(fault, "check --views 0 --layout tet80 --isolate none");
@@ -101,7 +101,7 @@ TEST_F(DriverFaults, what_a_driver_reports_has_the_status_that_it_has_without_is
 
 TEST_F(DriverFaults, row_of_a_crash_is_the_only_one_that_fails)
 {
-    if (!has("opencl")) GTEST_SKIP() << "there is no OpenCL device";
+    if (!has("opencl")) GTEST_SKIP() << "an OpenCL device is missing";
     // The first process builds the self-test and a row; the second builds only the other row.
     const Ended ended = run_faulty("build:2 abort", "check --views 0 --layout tet80,tet96 --junit check.xml");
     EXPECT_EQ(ended.code, 1) << ended.out << ended.errors;
@@ -113,7 +113,7 @@ TEST_F(DriverFaults, row_of_a_crash_is_the_only_one_that_fails)
 
 TEST_F(DriverFaults, crash_in_the_middle_of_timing_costs_no_other_rows_samples)
 {
-    if (!has("opencl")) GTEST_SKIP() << "there is no OpenCL device";
+    if (!has("opencl")) GTEST_SKIP() << "an OpenCL device is missing";
     const Ended ended =
         run_faulty("launch:40 abort", "bench --samples 20 --sample-time 0 --layout tet80 --out bench.json");
     EXPECT_EQ(ended.code, 1) << ended.out << ended.errors;
@@ -123,7 +123,7 @@ TEST_F(DriverFaults, crash_in_the_middle_of_timing_costs_no_other_rows_samples)
 
 TEST_F(DriverFaults, hang_ends_at_its_limit)
 {
-    if (!has("opencl")) GTEST_SKIP() << "there is no OpenCL device";
+    if (!has("opencl")) GTEST_SKIP() << "an OpenCL device is missing";
     const Ended ended = run_faulty("launch:3 hang", "check --views 0 --layout tet80 --driver-limit 15");
     EXPECT_EQ(ended.code, 1) << ended.errors;
     EXPECT_TRUE(contains(ended.out, "gave no answer for 15 s, and was ended, while launching cdt/maria/tet80"));
@@ -131,7 +131,7 @@ TEST_F(DriverFaults, hang_ends_at_its_limit)
 
 TEST_F(DriverFaults, version_of_the_future_is_used_and_one_that_is_no_text_is_no_crash)
 {
-    if (!has("opencl")) GTEST_SKIP() << "there is no OpenCL device";
+    if (!has("opencl")) GTEST_SKIP() << "an OpenCL device is missing";
     for (const char* fault : {"version future", "version rubbish"}) {
         const Ended ended = run_faulty(fault, "check --views 0 --layout tet80");
         EXPECT_EQ(ended.code, 0) << fault << ended.out << ended.errors;
@@ -141,7 +141,7 @@ TEST_F(DriverFaults, version_of_the_future_is_used_and_one_that_is_no_text_is_no
 
 TEST_F(DriverFaults, garbage_and_nan_in_results_are_wrong)
 {
-    if (!has("opencl")) GTEST_SKIP() << "there is no OpenCL device";
+    if (!has("opencl")) GTEST_SKIP() << "an OpenCL device is missing";
     for (const char* fault : {"read:2 garbage", "read:2 nan"}) {
         const Ended ended = run_faulty(fault, "check --views 0 --layout tet80");
         EXPECT_EQ(ended.code, 1) << fault << ended.errors;

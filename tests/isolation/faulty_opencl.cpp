@@ -1,4 +1,4 @@
-// Loaded before the OpenCL loader (LD_PRELOAD), makes the drivers behind it misbehave: FAULTY_OPENCL is "<call> <how>",
+// Loaded before the OpenCL loader (LD_PRELOAD), makes its drivers misbehave: FAULTY_OPENCL is "<call> <how>",
 // or "<call>:<n> <how>" for the n-th call of its kind. Only a process that loads drivers ever comes here.
 #define CL_TARGET_OPENCL_VERSION 120
 #include "tests/isolation/misbehaviour.h"

@@ -139,7 +139,7 @@ VKAPI_ATTR VkResult VKAPI_CALL map_memory(VkDevice device, VkDeviceMemory memory
 VKAPI_ATTR VkResult VKAPI_CALL submit(VkQueue queue, uint32_t count, const VkSubmitInfo* infos, VkFence fence)
 {
     static int calls = 0;
-    if (count > 0) // an empty one serves for its fence alone
+    if (count > 0) // an empty one serves only for its fence
         if (const VkResult code = code_of(fault("launch", ++calls)); code != VK_SUCCESS) return code;
     return next.submit(queue, count, infos, fence);
 }

@@ -1,7 +1,7 @@
 // The contract forwarded to another process, which is this program once more: see main().
 #include "core/isolation/driver_server.h"
 #include "core/isolation/isolated_backend.h"
-#include "tests/isolation/moody_backend.h"
+#include "tests/isolation/erratic_backend.h"
 #include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
@@ -75,7 +75,7 @@ protected:
 
     PackedScene scene_ = some_scene(4);
     TriangleMesh mesh_{{{1, 2, 3}, {4, 5, 6}}, {{0, 1, 0}, {1, 1, 1}}};
-    MoodyBackend direct_;
+    ErraticBackend direct_;
     std::optional<IsolatedBackend> backend_;
 };
 
@@ -111,8 +111,8 @@ TEST_F(Isolated, backend_has_the_devices_facts_and_abilities_of_the_driver)
         put_devices(theirs, {direct_.devices()[i]});
         EXPECT_TRUE(std::ranges::equal(ours.bytes(), theirs.bytes()));
     }
-    EXPECT_EQ(backend_->name(), "moody");
-    EXPECT_EQ(backend_->clock(), "moody clock");
+    EXPECT_EQ(backend_->name(), "erratic");
+    EXPECT_EQ(backend_->clock(), "erratic clock");
     EXPECT_EQ(backend_->why_not(1, {.math = MathMode::fast}), "device 1 is never fast");
     EXPECT_EQ(backend_->why_not(1, {}), "");
     const auto quads = some_quads(999);
@@ -154,7 +154,7 @@ TEST_F(Isolated, sessions_get_and_give_the_same_bits)
 
 TEST_F(Isolated, jobs_that_are_launched_together_cross_together)
 {
-    const auto words_of = [](const std::vector<Hit>& hits) { // floats among them may be no numbers
+    const auto words_of = [](const std::vector<Hit>& hits) { // floats among them may be NaN
         std::vector<std::uint32_t> words(HIT_WORDS * hits.size());
         std::memcpy(words.data(), hits.data(), 4 * words.size());
         return words;
@@ -171,7 +171,7 @@ TEST_F(Isolated, jobs_that_are_launched_together_cross_together)
             EXPECT_NE(error_of([&] { use(*open("launch abort"), 1); }), "");
         }
         session->read_back(again);
-        EXPECT_EQ(words_of(again), words_of(directs)) << "also from another process, where they are launched again";
+        EXPECT_EQ(words_of(again), words_of(directs)) << "also from another process, which launches them again";
     }
 }
 
@@ -229,7 +229,7 @@ TEST_F(Isolated, driver_that_ends_is_an_error_of_its_call_and_other_sessions_go_
     for (const auto& [how, text] : ends)
         for (const auto& [call, doing] : calls) {
             EXPECT_EQ(error_of([&] { use(*open(std::string(call) + " " + how), 1); }),
-                      std::string("driver: the driver of moody (moody-1.2, caf\xc3\xa9 0) ") + text + " while " +
+                      std::string("driver: the driver of erratic (erratic-1.2, caf\xc3\xa9 0) ") + text + " while " +
                           doing);
             std::vector<Hit> hits(64);
             bystander->read_back(hits); // those of its last launch, in another process
@@ -291,7 +291,8 @@ TEST_F(Isolated, driver_that_crashes_at_its_list_of_devices_is_broken)
     const Device& device = backend_->devices()[0];
     EXPECT_TRUE(device.broken);
     EXPECT_FALSE(device.usable);
-    EXPECT_EQ(device.reason, "the driver of moody was ended by signal 6 (SIGABRT, Aborted) while listing its devices");
+    EXPECT_EQ(device.reason,
+              "the driver of erratic was ended by signal 6 (SIGABRT, Aborted) while listing its devices");
     EXPECT_EQ(backend_->why_not(0, {}), device.reason);
     EXPECT_EQ(error_of([&] { open("").reset(); }), "driver: " + device.reason);
 }
@@ -333,7 +334,7 @@ TEST(Bytes, of_a_damaged_message_are_refused)
 int main(int argc, char** argv)
 {
     if (argc > 1 && std::string(argv[1]) == "serve-driver") {
-        MoodyBackend backend;
+        ErraticBackend backend;
         return serve_driver({argv + 2, argv + argc}, {&backend});
     }
     ::testing::InitGoogleTest(&argc, argv);

@@ -11,7 +11,7 @@ protected:
     void SetUp() override
     {
         static const bool has_device = run("devices --require vulkan").code == 0;
-        if (!has_device) GTEST_SKIP() << "there is no Vulkan device";
+        if (!has_device) GTEST_SKIP() << "a Vulkan device is missing";
         write_file(folder_ / "layers/faulty.json",
                    R"({"file_format_version": "1.1.2", "layer": {"name": "VK_LAYER_TETRACE_faulty", "type": "GLOBAL",
                        "library_path": ")" TETRACE_FAULTY_VULKAN R"(", "api_version": "1.3.0",

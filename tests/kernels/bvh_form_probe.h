@@ -8,7 +8,7 @@
 
 namespace tetrace::test {
 
-/// A ray's hit, its words as they are, and what the ray visited.
+/// A ray's hit as raw words, and what the ray visited.
 struct VisitedHit {
     std::array<std::uint32_t, 6> hit;
     std::uint32_t nodes, triangles;

@@ -1,6 +1,6 @@
 // The forms that BVHs have for processors against the text that every API compiles: hits bit for bit, and the same
 // nodes and triangles visited (docs/spec/bvhs.md, B13).
-#include "core/bvh/balanced_bvh.h"
+#include "core/bvh/bvh.h"
 #include "core/device/host.h"
 #include "tests/kernels/bvh_form_probe.h"
 #include "tests/support/bvh_scene.h"

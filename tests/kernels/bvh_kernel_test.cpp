@@ -1,7 +1,7 @@
 // The BVH kernels against a loop over all triangles and against exact arithmetic, on meshes and rays that are hard for
 // them.
 #include "backends/embree/bvh_builder.h"
-#include "core/bvh/balanced_bvh.h"
+#include "core/bvh/bvh.h"
 #include "core/pack/pack_bvh.h"
 #include "tests/support/bvh_kernels.h"
 #include "tests/support/bvh_meshes.h"
@@ -80,7 +80,7 @@ private:
     }
 };
 
-/// The triangle test alone, on all leaf triangles of a tree from the last to the first.
+/// Only the triangle test, on all leaf triangles of a tree from the last to the first.
 bvh::Hit trace_all(const PackedScene& packed, const Ray& ray, float end = NO_END)
 {
     const SceneView view = view_of(packed);
@@ -129,7 +129,7 @@ TriangleMesh cube(int n)
     return mesh;
 }
 
-/// A closed mesh round the origin: the cube, each vertex moved along its own radius.
+/// A closed mesh around the origin: the cube, each vertex moved along its own radius.
 TriangleMesh boulder(int n, std::uint64_t seed)
 {
     TriangleMesh mesh = cube(n);
@@ -254,7 +254,7 @@ TEST_P(Meshes, the_first_exact_hit_is_found_but_for_rays_within_rounding_of_an_e
     EXPECT_LE(differing, compared / 100);
 }
 
-TEST_P(Meshes, a_ray_ends_behind_its_hit_or_has_none)
+TEST_P(Meshes, a_ray_ends_after_its_hit_or_has_none)
 {
     if (GetParam() == needles) return; // t of a needle is rounded by more than a hundredth
     Random random(15);

@@ -43,7 +43,7 @@ bool is_left(half32::Sheared p, half32::Sheared q, bool p_is_first)
     return p.x * q.y > p.y * q.x;
 }
 
-/// The places of a grid of 5 x 5 round the ray.
+/// The places of a grid of 5 x 5 around the ray.
 std::vector<half32::Sheared> places_round_the_ray()
 {
     std::vector<half32::Sheared> places;
@@ -142,7 +142,7 @@ std::int64_t lost_of(const std::vector<Hit>& all)
 }
 
 /// What rays meet that go through cluster_of() from so far that roundings leave a point of its inner cells, or a line:
-/// along all diagonals of the space and of its planes. The order of the vertices alone decides the way through them.
+/// along all diagonals of the space and of its planes. Only the order of the vertices decides the way through them.
 std::vector<Hit> hits_on_cluster(const Scene& scene, Layout layout)
 {
     const PackedScene packed = pack(scene, layout, TetOrder::chains);

@@ -169,7 +169,7 @@ TEST(Entry, rays_parallel_to_a_side_enter_by_the_side_they_face)
     expect_brute_force({x, y, high.z + 1}, {0, 0, -1});
     expect_brute_force({x, y, low.z - 1}, {0, 0, 1});
     expect_brute_force({high.x + 2, y, x}, {-1, 0, 0});
-    expect_brute_force({x, y, high.z + 1}, {0, 1, 0}); // beside the box
+    expect_brute_force({x, y, high.z + 1}, {0, 1, 0}); // outside the box
     EXPECT_EQ(look_up({x, y, high.z + 1}, {0, 0, 1}), NO_HALF_FACE) << "away from the box";
 }
 

@@ -1,6 +1,6 @@
 // project on rays that are built to break a walk (tests/support/hard_rays.h), each judged by exact arithmetic.
 // TETRACE_HARD_RAYS is how many rays per scene gets.
-#include "bench/truth/given_oracle.h"
+#include "bench/truth/oracle.h"
 #include "core/device/given_quads.h"
 #include "scenes/load.h"
 #include "scenes/optimise/optimise.h"

@@ -67,7 +67,7 @@ TEST(Maria, leaves_by_the_face_that_the_exact_line_leaves_by)
 
 namespace {
 
-// A tet with corners on a coarse grid, where the whole step is exact: what falls on an edge, falls on it in float too.
+// A tet with corners on a coarse grid, so that the whole step is exact: a point on an edge is on it in float too.
 RandomTet coarse_tet(Random& random)
 {
     for (;;) {

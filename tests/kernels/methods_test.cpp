@@ -58,7 +58,7 @@ struct CountedMethod {
         }
 
 // Each of the three faces is the exit of a third of the rays that enter by the fourth: nothing in how tets and rays are
-// drawn tells the corners of a face apart. One face costs 46, 69 or 51, the others 69, 92 and 68.
+// drawn distinguishes the corners of a face. One face costs 46, 69 or 51, the others 69, 92 and 68.
 const double third = 1.0 / 3.0;
 double mean_of(double first, double others)
 {
@@ -182,7 +182,7 @@ RandomTet corner_tet(float x)
     return {{{x, 0, 0}, {x, 1, 0}, {x + 1, 0, 0}, {x, 0, 1}}};
 }
 
-/// A ray from tet 0 that leaves it by face 0, which is linked to that of tet 1: a tet that lies beside the ray.
+/// A ray from tet 0 that leaves it by face 0, which is linked to that of tet 1: a tet that the ray does not cross.
 constexpr Float3 inside{0.1f, 0.1f, 0.1f}, outwards{1, 0.9f, 0.8f};
 PackedScene misled()
 {
@@ -193,7 +193,7 @@ PackedScene misled()
 
 } // namespace
 
-TEST(Methods, a_walk_that_finds_no_exit_is_lost_where_it_stands)
+TEST(Methods, a_walk_that_finds_no_exit_is_lost_in_that_tet)
 {
     for (const CountedMethod& method : methods()) {
         const bool may_find_none = !always_leaves(method);

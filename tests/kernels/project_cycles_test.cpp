@@ -80,7 +80,7 @@ struct CyclicStart {
     std::uint32_t tet;
 };
 
-/// Of so many rays and all tets that they cross.
+/// Of that many rays and all tets that they cross.
 std::vector<CyclicStart> cyclic_starts(const Grid& grid, std::uint64_t rays)
 {
     const HardRays hard(grid.scene);
@@ -103,7 +103,7 @@ bool is_usable(const Backend& backend, std::size_t device)
     return backend.devices()[device].usable && backend.name() != "embree";
 }
 
-/// What rays from a cyclic start meet: its own, and others from the same tet towards pixels beside it.
+/// What rays from a cyclic start meet: its own, and others from the same tet towards neighbouring pixels.
 std::vector<Hit> hits_from(Session& session, const Grid& grid, const PackedScene& packed,
                            const std::vector<CyclicStart>& starts)
 {
@@ -187,7 +187,7 @@ TEST(ProjectCycles, goes_in_circles_only_from_tets_within_rounding_and_then_begi
             sought = {};
             const Hit hit = traced(grid, line, tet);
             ASSERT_NE(hit.face_id, LOST) << "ray " << number;
-            const bool anew = is_lost_without_beginning_anew(grid, ray, tet); // else a triangle lies on the cycle
+            const bool anew = is_lost_without_beginning_anew(grid, ray, tet); // else a triangle is on the cycle
             ASSERT_EQ(sought[1], anew ? 1u : 0u) << "ray " << number;
             if (!anew) continue;
             ++begun_anew;

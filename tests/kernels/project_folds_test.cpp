@@ -1,6 +1,6 @@
 // Sides of the domain that a ray sees at a grazing angle: rounding can fold them, so that the ray enters and leaves by
 // the same side (docs/spec/project.md, P10).
-#include "core/mesh/sides.h"
+#include "core/mesh/entry_grid.h"
 #include "tests/support/project_on_grids.h"
 
 #include <gtest/gtest.h>
@@ -67,7 +67,7 @@ std::uint32_t met_from(const Grid& grid, std::uint32_t entry, const Line& line)
     return NO_HIT;
 }
 
-/// Its sides are one square each. Vertices inside a side stand up to 0.3 of `cell` from their places in the grid, where
+/// Its sides are one square each. Vertices inside a side are up to 0.3 of `cell` from their places in the grid, where
 /// is_moved(place).
 template <class IsMoved>
 Scene with_irregular_sides(Scene scene, float cell, const IsMoved& is_moved)

@@ -29,7 +29,7 @@ bool holds(const Grid& grid, std::uint32_t half_face, const right::Ray& ray)
            right::side_at_entry(ray, corner(2), corner(0)) > 0;
 }
 
-// Whether a domain's squares are equally wide, as they are in all scenes but some of the tests'.
+// Whether a domain's squares are equally wide: true of all scenes but some of the tests'.
 bool has_even_lines(const Grid& grid)
 {
     return std::ranges::all_of(grid.scene.domain.lines, [](const std::vector<float>& lines) {
@@ -135,7 +135,7 @@ TEST(ProjectWalk, is_right_by_exact_arithmetic_or_within_rounding_of_an_edge)
 
 TEST(ProjectWalk, enters_by_a_face_anywhere_or_misses_where_the_square_has_none)
 {
-    // Along lines of the domain's own squares and edges, where the look-up's square and the signs may differ.
+    // Along lines of the domain's own squares and edges: the look-up's square and the signs may differ there.
     Random random(64);
     sought = {};
     for (const auto& grid : grids()) {
@@ -150,7 +150,7 @@ TEST(ProjectWalk, enters_by_a_face_anywhere_or_misses_where_the_square_has_none)
             ASSERT_NE(hit.face_id, LOST) << grid->name << ", ray " << i;
         }
     }
-    EXPECT_GT(sought[0], 0u) << "rays whose square has no face that holds them";
+    EXPECT_GT(sought[0], 0u) << "rays whose square lacks a face that holds them";
 }
 
 TEST(ProjectWalk, asks_a_square_within_rounding_of_where_the_ray_meets_the_domain)

@@ -98,7 +98,7 @@ TEST_F(MergeReproduce, a_shard_without_anything_to_do_is_refused)
 
 class ResumedShard : public ReproduceTest {};
 
-TEST_F(ResumedShard, a_shard_that_was_killed_goes_on_alone_and_merges)
+TEST_F(ResumedShard, a_shard_that_was_killed_is_resumed_and_merges)
 {
     const std::string command = "table4 --method maria,ms06 --layout tet80 --size 48 --views 0-1281:20 ";
     ASSERT_EQ(run(command + "--out whole.json").code, 0);

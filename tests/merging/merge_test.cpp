@@ -49,7 +49,7 @@ TEST_F(Merge, a_row_is_as_noisy_as_the_noisiest_of_its_shards_and_has_the_fewest
     const auto set = [](double pulse, const char* disturbed, std::size_t samples) {
         return [=](Json& section) {
             for (Json& row : section["rows"]) {
-                if (row["status"] == "unsupported") continue; // Embree 4 has no streams
+                if (row["status"] == "unsupported") continue; // Embree 4 lacks streams
                 Json& times = row["times"];
                 times["pulse"] = pulse;
                 times.erase("disturbed");

@@ -60,7 +60,7 @@ TEST(OwnGpu, each_rank_of_a_machine_takes_another_and_keeps_what_is_no_gpu)
     EXPECT_EQ(names_for(2, devices), (Names{"a", "llvmpipe"})) << "more ranks than GPUs share them";
 }
 
-TEST(OwnGpu, gpus_are_told_by_their_address_where_all_have_one)
+TEST(OwnGpu, gpus_are_identified_by_their_address_if_all_have_one)
 {
     EXPECT_EQ(
         names_for(0, {device("far", DeviceKind::gpu, "0000:c1:00.0"), device("near", DeviceKind::gpu, "0000:41:00.0")}),

@@ -1,4 +1,4 @@
-#include "bench/merging/rank.h"
+#include "bench/verbs/ranks.h"
 #include "core/base/error.h"
 #include "tests/support/temporary_folder.h"
 
@@ -52,7 +52,7 @@ TEST(Rank, mpirun_of_open_mpi_comes_before_the_slurm_that_started_it)
     EXPECT_EQ(rank->job, "1234");
 }
 
-TEST(Rank, other_launchers_are_told_by_pmi)
+TEST(Rank, other_launchers_are_recognised_by_pmi)
 {
     Variables mpich = {{"PMI_RANK", "1"}, {"PMI_SIZE", "2"}, {"MPI_LOCALRANKID", "1"}, {"MPI_LOCALNRANKS", "2"}};
     const auto rank = rank_in(mpich);
@@ -73,7 +73,7 @@ TEST(Rank, a_launch_on_several_machines_that_nothing_names_is_refused)
     EXPECT_TRUE(contains(error_of([&] { static_cast<void>(rank_in(mpich)); }), "set TETRACE_LAUNCH to a text"));
     mpich["TETRACE_LAUNCH"] = "monday";
     EXPECT_EQ(rank_in(mpich)->job, "named monday");
-    EXPECT_FALSE(rank_in({{"PMI_RANK", "0"}, {"PMI_SIZE", "1"}})) << "a process alone needs no name";
+    EXPECT_FALSE(rank_in({{"PMI_RANK", "0"}, {"PMI_SIZE", "1"}})) << "a single process needs no name";
 }
 
 TEST(Rank, the_launcher_is_the_ancestor_that_is_no_rank_itself)
@@ -82,7 +82,7 @@ TEST(Rank, the_launcher_is_the_ancestor_that_is_no_rank_itself)
     EXPECT_EQ(launcher_name(), launcher_name());
 }
 
-TEST(Rank, a_process_alone_is_no_rank)
+TEST(Rank, a_single_process_is_not_a_rank)
 {
     EXPECT_FALSE(rank_in({}));
     EXPECT_FALSE(rank_in({{"OMPI_COMM_WORLD_RANK", "0"}, {"OMPI_COMM_WORLD_SIZE", "1"}}));

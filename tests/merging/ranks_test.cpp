@@ -97,7 +97,7 @@ TEST_F(Ranks, results_of_an_earlier_launch_are_not_taken_for_this_one_s)
 }
 
 // MPICH's launcher names no launch. Here each launch is a process of its own, as it is there.
-TEST_F(Ranks, launches_without_a_name_are_told_apart_by_the_process_that_started_their_ranks)
+TEST_F(Ranks, launches_without_a_name_are_distinguished_by_the_process_that_started_their_ranks)
 {
     const auto launch = [&](unsigned ranks, const std::string& more) {
         const pid_t launcher = ::fork();
@@ -119,7 +119,7 @@ TEST_F(Ranks, launches_without_a_name_are_told_apart_by_the_process_that_started
     EXPECT_TRUE(contains(file("rank0.err"), "1 of 2 ranks ended without a result")) << file("rank0.err");
 }
 
-TEST_F(Ranks, write_google_benchmark_s_own_form_each_to_a_file_of_its_own)
+TEST_F(Ranks, write_google_benchmark_s_own_form_each_to_its_own_file)
 {
     const std::string bench =
         "bench --backend openmp --layout tet80 --scene cubes --resolution 6 --size 16 --samples 3 --sample-time 0 "
@@ -130,7 +130,7 @@ TEST_F(Ranks, write_google_benchmark_s_own_form_each_to_a_file_of_its_own)
         EXPECT_TRUE(Json::parse(file(name)).contains("benchmarks")) << name;
 }
 
-TEST_F(Ranks, a_dead_rank_is_named_and_run_again_alone)
+TEST_F(Ranks, a_dead_rank_is_named_and_can_be_run_again)
 {
     ASSERT_EQ(run(command + " --out whole.json").code, 0);
     const pid_t first = start(0, 2, command + " --wait 2s --out all.json");
@@ -153,7 +153,7 @@ TEST_F(Ranks, a_launch_can_be_repeated_as_a_whole_and_goes_on)
     EXPECT_EQ(file("all.shard-2-of-2.json.journal"), journal) << "nothing was traced again";
 }
 
-TEST_F(Ranks, need_a_file_and_can_be_told_to_share_nothing)
+TEST_F(Ranks, need_a_file_and_share_nothing_on_request)
 {
     EXPECT_EQ(end(start(0, 2, command)), 2);
     EXPECT_TRUE(contains(file("rank0.err"), "this is rank 0 of 2"));

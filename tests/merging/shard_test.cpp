@@ -1,7 +1,7 @@
 #include "bench/options/options.h"
 #include "bench/options/shard.h"
-#include "core/base/try_lock.h"
-#include "scenes/file_lock.h"
+#include "core/base/files.h"
+#include "scenes/cache.h"
 #include "tests/support/temporary_folder.h"
 
 #include <algorithm>

@@ -218,7 +218,7 @@ TEST_F(BenchTables, comparisons_show_their_interval_and_references_none)
         ++with;
         EXPECT_EQ(text->substr(0, 7), " 1.00 [") << *text;
     }
-    EXPECT_EQ(with, 2 * 4) << "three emulations beside openmp, and Vulkan's GPU beside cuda, in two layouts";
+    EXPECT_EQ(with, 2 * 4) << "three emulations after openmp, and Vulkan's GPU after cuda, in two layouts";
     EXPECT_EQ(column->title, "x reference") << "openmp and cuda both are";
 }
 
@@ -254,7 +254,7 @@ TEST_F(BenchTables, what_the_page_of_report_shows_is_in_json)
         EXPECT_TRUE(field.report.title == nullptr || field.schema != nullptr) << field.key;
 }
 
-TEST_F(BenchTables, a_row_tells_its_schedule_in_csv_and_json)
+TEST_F(BenchTables, a_row_has_its_schedule_in_csv_and_json)
 {
     result_.rows[0].key.kernel.schedule = Schedule::packets;
     EXPECT_TRUE(row_json(RowFacts(result_.rows[0]))["schedule"] == "packets");

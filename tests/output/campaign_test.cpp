@@ -1,5 +1,5 @@
-// The page of many results: an index, machines beside each other in the same work, and each machine over its dates.
-#include "bench/report/campaign/campaign_sections.h"
+// The page of many results: an index, machines compared in the same work, and each machine over its dates.
+#include "bench/report/campaign/campaign.h"
 #include "bench/results/result_folder.h"
 #include "tests/output/report_fixture.h"
 
@@ -11,7 +11,7 @@ using namespace tetrace::test;
 
 namespace {
 
-/// A result of bench on a machine, so many days after the first of January.
+/// A result of bench on a machine, some days after the first of January.
 json result_of(const std::string& label, int day, double mrays_per_s = 4)
 {
     json result = bench_json();
@@ -88,28 +88,29 @@ TEST_F(CampaignPage, grows_no_faster_than_its_results)
     EXPECT_LT(size_of(100), 2 * few);
 }
 
-TEST_F(CampaignPage, shows_the_newest_rate_of_each_machine_beside_the_first)
+TEST_F(CampaignPage, shows_the_newest_rate_of_each_machine_next_to_the_first)
 {
-    const std::string beside =
-        section_of(page_of({result_of("one", 3, 8), result_of("one", 1, 5), result_of("two", 2, 12)}), "beside");
-    EXPECT_EQ(occurrences(beside, ">8.00</td>"), 3u) << beside;
-    EXPECT_EQ(occurrences(beside, ">12.0<small>× 1.50</small>"), 3u) << "processor, GPU, emulated";
-    EXPECT_FALSE(contains(beside, "5.00<"));
-    EXPECT_EQ(occurrences(beside, "<svg"), 3u);
+    const std::string machines = section_of(
+        page_of({result_of("one", 3, 8), result_of("one", 1, 5), result_of("two", 2, 12)}), "compared-machines");
+    EXPECT_EQ(occurrences(machines, ">8.00</td>"), 3u) << machines;
+    EXPECT_EQ(occurrences(machines, ">12.0<small>× 1.50</small>"), 3u) << "processor, GPU, emulated";
+    EXPECT_FALSE(contains(machines, "5.00<"));
+    EXPECT_EQ(occurrences(machines, "<svg"), 3u);
 }
 
-TEST_F(CampaignPage, compares_rows_of_the_same_work_alone)
+TEST_F(CampaignPage, compares_only_rows_of_the_same_work)
 {
     json other_hits = result_of("two", 1);
     other_hits["tetrace"]["rows"][2]["hit_hash"] = "0000000000000011";
     json other_scene = result_of("three", 1);
     other_scene["tetrace"]["scenes"][0]["hash"] = "fedcba9876543210";
-    const std::string beside = section_of(page_of({result_of("one", 1), other_hits, other_scene}), "beside");
-    EXPECT_TRUE(contains(beside, "one, 2 threads"));
-    EXPECT_TRUE(contains(beside, "two, 2 threads"));
-    EXPECT_FALSE(contains(beside, "three")) << "no machine traced its scene";
-    EXPECT_EQ(occurrences(beside, "<table>"), 2u) << "emulated devices gave other answers";
-    EXPECT_TRUE(contains(section_of(page_of({result_of("one", 1)}), "beside"), "No two machines"));
+    const std::string machines =
+        section_of(page_of({result_of("one", 1), other_hits, other_scene}), "compared-machines");
+    EXPECT_TRUE(contains(machines, "one, 2 threads"));
+    EXPECT_TRUE(contains(machines, "two, 2 threads"));
+    EXPECT_FALSE(contains(machines, "three")) << "no machine traced its scene";
+    EXPECT_EQ(occurrences(machines, "<table>"), 2u) << "emulated devices gave other answers";
+    EXPECT_TRUE(contains(section_of(page_of({result_of("one", 1)}), "compared-machines"), "No two machines"));
 }
 
 TEST_F(CampaignPage, says_how_much_work_has_no_counterpart)
@@ -117,7 +118,7 @@ TEST_F(CampaignPage, says_how_much_work_has_no_counterpart)
     json more = result_of("two", 1);
     more["tetrace"]["rows"].push_back(more["tetrace"]["rows"][0]);
     more["tetrace"]["rows"].back()["name"] = "row/openmp/more";
-    EXPECT_TRUE(contains(section_of(page_of({result_of("one", 1), more}), "beside"), "1 work is not shown"));
+    EXPECT_TRUE(contains(section_of(page_of({result_of("one", 1), more}), "compared-machines"), "1 work is not shown"));
 }
 
 TEST_F(CampaignPage, keeps_one_gpu_in_two_hosts_apart)
@@ -129,7 +130,7 @@ TEST_F(CampaignPage, keeps_one_gpu_in_two_hosts_apart)
     EXPECT_EQ(names, (std::set<std::string>{"a device of cuda in one", "a device of cuda in two"}));
 }
 
-TEST_F(CampaignPage, tells_hosts_apart_by_label_or_processor_or_else_by_folder)
+TEST_F(CampaignPage, distinguishes_hosts_by_label_or_processor_or_else_by_folder)
 {
     json result = bench_json();
     const auto names_of = [&](const json& one, const json& two) {
@@ -150,13 +151,13 @@ TEST_F(CampaignPage, tells_hosts_apart_by_label_or_processor_or_else_by_folder)
     EXPECT_EQ(names_of(known, result), (Names{"mine", "a device (folder zen5)"}));
 }
 
-TEST_F(CampaignPage, tells_runs_with_other_numbers_of_threads_apart)
+TEST_F(CampaignPage, distinguishes_runs_with_other_numbers_of_threads)
 {
     json single = result_of("one", 1);
     single["tetrace"]["threads"] = 1;
     const std::string page = page_of({result_of("one", 2), single});
-    EXPECT_TRUE(contains(section_of(page, "beside"), "one, 1 thread"));
-    EXPECT_TRUE(contains(section_of(page, "beside"), "one, 2 threads"));
+    EXPECT_TRUE(contains(section_of(page, "compared-machines"), "one, 1 thread"));
+    EXPECT_TRUE(contains(section_of(page, "compared-machines"), "one, 2 threads"));
 }
 
 TEST_F(CampaignPage, draws_each_machine_over_its_dates_with_a_verdict_of_the_last_step)
@@ -170,7 +171,7 @@ TEST_F(CampaignPage, draws_each_machine_over_its_dates_with_a_verdict_of_the_las
     EXPECT_TRUE(contains(section_of(page_of({result_of("one", 1)}), "trends"), "on two dates"));
 }
 
-/// The pulse beside the samples of each of its rows, over its fastest.
+/// The calibration during the samples of each of its rows, over its fastest.
 static json with_pulse(json result, double ratio)
 {
     for (json& row : result["tetrace"]["rows"])
@@ -192,17 +193,17 @@ TEST_F(CampaignPage, calls_rates_of_a_machine_that_changed_noisy_as_compare_does
     before["tetrace"]["pulses"] = host(0.01);
     after["tetrace"]["pulses"] = host(0.02);
     const std::string slower_host = section_of(page_of({before, after}), "trends");
-    EXPECT_EQ(occurrences(slower_host, ">NOISY<"), 4u) << "on the host alone";
+    EXPECT_EQ(occurrences(slower_host, ">NOISY<"), 4u) << "only on the host";
     EXPECT_EQ(occurrences(slower_host, ">SLOWER<"), 2u) << "the GPU has a pulse of its own";
 }
 
 TEST_F(CampaignPage, leaves_noisy_rates_out_of_the_means_of_machines)
 {
     const std::string noisy =
-        section_of(page_of({result_of("one", 1, 4), with_pulse(result_of("two", 2, 2), 1.6)}), "beside");
+        section_of(page_of({result_of("one", 1, 4), with_pulse(result_of("two", 2, 2), 1.6)}), "compared-machines");
     EXPECT_EQ(occurrences(noisy, ">NOISY<"), 3u);
     EXPECT_FALSE(contains(noisy, "Means of the rates")) << noisy;
-    EXPECT_TRUE(contains(section_of(page_of({result_of("one", 1, 4), result_of("two", 2, 2)}), "beside"),
+    EXPECT_TRUE(contains(section_of(page_of({result_of("one", 1, 4), result_of("two", 2, 2)}), "compared-machines"),
                          "Means of the rates"));
 }
 
@@ -217,10 +218,10 @@ TEST_F(CampaignPage, compares_exit_searches_too)
         result["tetrace"]["searches"] = {{"tets", 100}, {"rays_a_tet", 80}, {"rows", {row}}};
         return result;
     };
-    const std::string beside = section_of(page_of({searched("one", 50), searched("two", 60)}), "beside");
-    EXPECT_TRUE(contains(beside, "exit searches only, 100 x 80 (Table 5)")) << beside;
-    EXPECT_TRUE(contains(beside, "maria tet80 api:openmp"));
-    EXPECT_TRUE(contains(beside, "60.0<small>× 1.20</small>"));
+    const std::string machines = section_of(page_of({searched("one", 50), searched("two", 60)}), "compared-machines");
+    EXPECT_TRUE(contains(machines, "exit searches only, 100 x 80 (Table 5)")) << machines;
+    EXPECT_TRUE(contains(machines, "maria tet80 api:openmp"));
+    EXPECT_TRUE(contains(machines, "60.0<small>× 1.20</small>"));
 }
 
 TEST_F(CampaignPage, leaves_out_what_is_no_result_with_the_reason)

@@ -21,7 +21,7 @@ RowRecord skipped_row(const std::string& reason)
     return row;
 }
 
-/// xmllint, where it is installed, says whether the text is what tests/output/junit.xsd allows.
+/// If xmllint is installed, it checks the text against tests/output/junit.xsd.
 void expect_valid(const std::string& xml)
 {
     const TemporaryFolder folder;

@@ -9,7 +9,7 @@
 
 using namespace tetrace;
 
-TEST(Progress, tells_stage_time_and_percentage_where_known)
+TEST(Progress, shows_stage_time_and_percentage_if_known)
 {
     EXPECT_EQ(progress_text("TetGen", 3.21, -1, 80), "TetGen  3.2 s");
     EXPECT_EQ(progress_text("verifying bunny", 75, 0.416, 80), "verifying bunny  1 min 15 s  42 %");
@@ -60,7 +60,7 @@ TEST(Progress, draws_after_two_seconds_and_leaves_the_line_empty)
     EXPECT_EQ(drawn.find('\x1b'), std::string::npos) << "NO_COLOR is honoured";
 }
 
-TEST(Progress, tells_the_time_left_of_work_that_knows_its_share)
+TEST(Progress, shows_the_time_left_of_work_that_knows_its_share)
 {
     testing::internal::CaptureStderr();
     {
@@ -74,7 +74,7 @@ TEST(Progress, tells_the_time_left_of_work_that_knows_its_share)
     EXPECT_EQ(drawn.rfind("\roptimising, round 2  2.1 s  25 %  6.2 s left", 0), 0u) << drawn;
 }
 
-TEST(Progress, tells_the_time_left_of_every_stage_that_knows_its_share_from_that_stage_alone)
+TEST(Progress, shows_the_time_left_of_every_stage_that_knows_its_share_from_that_stage)
 {
     testing::internal::CaptureStderr();
     {

@@ -66,7 +66,7 @@ TEST_F(ReportInChromium, opens_without_a_word_on_the_console_and_every_chart_has
     EXPECT_TRUE(contains(section_of(browsed.document, "paper"), "class=\"line\""));
 }
 
-TEST_F(ReportInChromium, a_page_that_loads_or_runs_something_would_be_told)
+TEST_F(ReportInChromium, a_page_that_loads_or_runs_something_would_be_reported)
 {
     std::string page = page_of({bench_json()});
     const std::size_t body = page.find("<body>") + 6;

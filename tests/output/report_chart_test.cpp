@@ -100,7 +100,7 @@ TEST(Axis, places_values_linearly_or_by_their_logarithm)
     const Axis linear = Axis::linear(0, 40, 4);
     EXPECT_DOUBLE_EQ(linear.place(10, 100, 200), 125);
     EXPECT_DOUBLE_EQ(linear.place(10, 200, 100), 175);
-    EXPECT_DOUBLE_EQ(linear.place(99, 100, 200), 200) << "beyond the axis: at its end";
+    EXPECT_DOUBLE_EQ(linear.place(99, 100, 200), 200) << "past the axis: at its end";
     const Axis logarithmic = Axis::logarithmic(1, 100'000);
     EXPECT_NEAR(logarithmic.place(10, 0, 100), 20, 1e-9);
     EXPECT_NEAR(logarithmic.place(1000, 0, 100), 60, 1e-9);
@@ -116,7 +116,7 @@ TEST(Axis, of_bars_ends_with_the_longest)
     EXPECT_THROW(static_cast<void>(Axis::from_zero(-1)), Error);
 }
 
-TEST(Axis, with_ticks_at_values_has_each_once_and_room_beside_them)
+TEST(Axis, with_ticks_at_values_has_each_once_and_a_margin)
 {
     const Axis axis = Axis::logarithmic_at({64, 44, 64}, 1.5);
     EXPECT_EQ(axis.ticks(), (std::vector<double>{44, 64}));
@@ -205,7 +205,7 @@ TEST(BarChart, bars_are_as_long_as_their_values)
     EXPECT_NEAR(widths[2] / widths[0], 0.5, 0.01);
 }
 
-TEST(BarChart, has_a_mark_a_bar_a_tick_a_sample_and_a_whisker_where_there_is_a_spread)
+TEST(BarChart, has_a_mark_per_bar_a_tick_per_sample_and_a_whisker_if_there_is_a_spread)
 {
     BarChart chart{"a chart", "Mrays/s", {bar_of(40), bar_of(10)}};
     chart.bars[0].samples = {39, 40, 44};
@@ -220,11 +220,11 @@ TEST(BarChart, has_a_mark_a_bar_a_tick_a_sample_and_a_whisker_where_there_is_a_s
     EXPECT_TRUE(contains(drawing, "40.0</text>"));
 }
 
-TEST(BarChart, nothing_is_drawn_beyond_the_drawing)
+TEST(BarChart, nothing_is_drawn_outside_the_drawing)
 {
     BarChart chart{"a chart", "Mrays/s", {bar_of(1e-15), bar_of(123456789)}};
     chart.bars[0].label = std::string(300, 'W');
-    chart.bars[1].note = "a note of a length that the drawing has no room for";
+    chart.bars[1].note = "a note of a length that does not fit in the drawing";
     chart.bars[1].samples = {2e8};
     const std::string drawing = draw(chart).str();
     for (const double x : attribute_of(drawing, "value", "x")) {
@@ -275,7 +275,7 @@ TEST(IntervalChart, an_interval_that_holds_one_is_hollow)
 TEST(Roofline, ceiling_and_share_are_those_of_the_copy_bandwidth)
 {
     Roofline roofline{"a device", 12.8e9, {{"a", "maria tet96", 0, 64, 50}}};
-    EXPECT_DOUBLE_EQ(roofline.ceiling(64), 200) << "12.8e9 bytes a second, 64 bytes a step";
+    EXPECT_DOUBLE_EQ(roofline.ceiling(64), 200) << "12.8e9 bytes per second, 64 bytes per step";
     EXPECT_DOUBLE_EQ(roofline.share(roofline.points[0]), 0.25);
     EXPECT_TRUE(contains(draw(roofline).str(), "25 %  maria tet96</text>"));
     EXPECT_TRUE(contains(draw(roofline).str(), "12.8 GB/s"));
@@ -364,12 +364,12 @@ TEST(LineChart, takes_one_point_empty_series_and_thousands)
         chart.series[1].points.emplace_back(i, 1e6 + i);
     const std::string drawing = draw(chart).str();
     EXPECT_EQ(occurrences(drawing, "class=\"mark "), 2u);
-    EXPECT_LT(drawing.size(), 60'000u) << "most of a long line's points have no marks of their own";
+    EXPECT_LT(drawing.size(), 60'000u) << "most of a long line's points are without marks";
 }
 
 TEST(LineChart, a_power_law_is_a_straight_line_between_logarithmic_axes)
 {
-    LineChart chart{"a figure", "faces", "ns a ray", {{"bvh2", {{1e2, 1e0}, {1e3, 1e1}, {1e4, 1e2}}}}, true, true};
+    LineChart chart{"a figure", "faces", "ns per ray", {{"bvh2", {{1e2, 1e0}, {1e3, 1e1}, {1e4, 1e2}}}}, true, true};
     const std::string drawing = draw(chart).str();
     std::smatch path;
     ASSERT_TRUE(

@@ -30,7 +30,7 @@ TEST(Series, have_marks_that_all_differ_up_to_their_number)
         if (i < series_marks / 2) lines.insert(series_class(i));
     }
     EXPECT_EQ(marks.size(), series_marks);
-    EXPECT_EQ(lines.size(), series_marks / 2) << "colour and dash tell lines apart without a shape";
+    EXPECT_EQ(lines.size(), series_marks / 2) << "colour and dash distinguish lines without a shape";
     EXPECT_EQ(series_class(series_marks), series_class(0));
 }
 
@@ -66,7 +66,7 @@ TEST(LineChart, marks_every_point_of_a_short_line_and_some_of_a_long_one)
         chart.series[0].points.clear();
         for (int i = 0; i < points; ++i)
             chart.series[0].points.emplace_back(i, i);
-        return occurrences(draw(chart).str(), "class=\"solid\"") - 1; // one stands before the name
+        return occurrences(draw(chart).str(), "class=\"solid\"") - 1; // one is before the name
     };
     EXPECT_EQ(marks_of(24), 24u);
     for (const int points : {25, 100, 1282}) {

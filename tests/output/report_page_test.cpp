@@ -57,10 +57,10 @@ TEST_F(ReportPage, begins_with_the_papers_claim_on_this_machine)
                          "through the tets 2.00 times as slowly as through the fastest BVH, bvh bvh2 on cuda"));
     const std::string page = page_of({with_bvh(2)});
     EXPECT_LT(page.find("id=\"answer\""), page.find("<nav>")) << "before everything else";
-    EXPECT_TRUE(contains(answer_of(bench_json()), "no section")) << "there is no BVH to compare with";
+    EXPECT_TRUE(contains(answer_of(bench_json()), "no section")) << "without a BVH to compare with";
 }
 
-TEST_F(ReportPage, names_the_fastest_bvh_beside_every_ratio_of_tets_to_it)
+TEST_F(ReportPage, names_the_fastest_bvh_with_every_ratio_of_tets_to_it)
 {
     json result = with_bvh(2);
     json& rows = result["tetrace"]["rows"];
@@ -72,7 +72,7 @@ TEST_F(ReportPage, names_the_fastest_bvh_beside_every_ratio_of_tets_to_it)
                          "1.33 times as fast as through the fastest BVH, bvh rt on vulkan"))
         << "of another API on the same GPU";
     EXPECT_FALSE(contains(section_of(page_of({result}), "ratios"), "fastest BVH"))
-        << "an older result has no such ratio";
+        << "an older result lacks such a ratio";
     rows[1]["rates"].update({{"best_bvh", "row/rt"}, {"ratio_to_best_bvh", 1.333}});
     EXPECT_TRUE(contains(section_of(page_of({result}), "ratios"), "1.33<")) << "without an interval";
     rows[1]["rates"].update({{"ratio_to_best_bvh_low", 1.25}, {"ratio_to_best_bvh_high", 1.5}});
@@ -160,12 +160,12 @@ TEST_F(ReportPage, emulated_devices_and_gpus_share_no_chart)
     EXPECT_EQ(drawings.size(), 3u);
     for (const std::string& drawing : drawings) {
         const auto rows = rows_of(drawing, "mark ");
-        EXPECT_EQ(rows.size(), 2u) << "the same rays of both results stand in one chart";
+        EXPECT_EQ(rows.size(), 2u) << "the same rays of both results are in one chart";
         EXPECT_EQ(std::set<std::string>(rows.begin(), rows.end()).size(), 1u);
     }
 }
 
-TEST_F(ReportPage, processors_of_one_name_are_told_apart)
+TEST_F(ReportPage, processors_of_one_name_are_distinguished)
 {
     json zen3 = bench_json(), zen5 = bench_json();
     for (json* result : {&zen3, &zen5})
@@ -180,7 +180,7 @@ TEST_F(ReportPage, processors_of_one_name_are_told_apart)
     }
 }
 
-TEST_F(ReportPage, a_result_tells_what_other_work_the_machine_had)
+TEST_F(ReportPage, a_result_reports_what_other_work_the_machine_had)
 {
     json busy = bench_json();
     busy["tetrace"]["load"] = {{"others", 1.25}, {"average", 3.5}, {"processors", 2}};
@@ -193,7 +193,7 @@ TEST_F(ReportPage, a_result_tells_what_other_work_the_machine_had)
         EXPECT_FALSE(contains(silent, title)) << title;
 }
 
-TEST_F(ReportPage, what_compilers_told_is_a_table_of_programs)
+TEST_F(ReportPage, what_compilers_report_is_a_table_of_programs)
 {
     json inspected = {{"tetrace", head_json("inspect", innocent)}};
     inspected["tetrace"]["skipped_targets"] = {"sm_90: no nvcc"};
@@ -272,7 +272,7 @@ TEST_F(ReportPage, a_row_of_an_unmeasured_device_is_on_no_roofline)
     EXPECT_TRUE(contains(section_of(page_of({result}), "roofline"), "No device of these results"));
 }
 
-TEST_F(ReportPage, the_papers_values_stand_beside_ours_with_the_verdicts)
+TEST_F(ReportPage, the_papers_values_are_next_to_ours_with_the_verdicts)
 {
     const std::string paper = section_of(page_of({reproduce_json()}), "paper");
     EXPECT_TRUE(contains(paper, "12.5<small>12.0 to 13.0</small><small class=\"paper\">paper 25.0, × 0.500</small>"));

@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Ten samples around so many seconds, 0.1 % apart.
+/// Ten samples around that many seconds, 0.1 % apart.
 Json samples_around(double seconds)
 {
     Json samples = Json::array();
@@ -81,7 +81,7 @@ protected:
     {
         return compare_results(file("a.json", before), file("b.json", after), filter, 0.03);
     }
-    /// What is told of the second of two rows where its second version, or the whole second result, was changed.
+    /// What is reported of the second of two rows if its second version, or the whole second result, was changed.
     std::string difference(const std::function<void(Json& tetrace)>& change)
     {
         const Json before = result_of({timed_row("one", 1), timed_row("two", 1)});
@@ -219,11 +219,11 @@ TEST_F(ResultComparisons, rows_of_different_work_are_listed_with_the_reason_and_
     const auto comparison = compare(before, after);
     EXPECT_EQ(comparison.rows[0].verdict(), "SAME");
     EXPECT_EQ(comparison.count(RowOutcome::different), 1u);
-    EXPECT_NEAR(comparison.geometric_mean().value(), 1, 1e-9) << "different work has no part in it";
+    EXPECT_NEAR(comparison.geometric_mean().value(), 1, 1e-9) << "different work is excluded";
     EXPECT_TRUE(comparison.regressions(false).empty()) << "nor is it a regression";
 }
 
-TEST_F(ResultComparisons, views_of_a_gpu_that_are_launched_together_and_alone_are_different_work)
+TEST_F(ResultComparisons, views_of_a_gpu_that_are_launched_together_and_singly_are_different_work)
 {
     for (const char* const type : {"gpu", "cpu"}) {
         Json before = result_of({timed_row("one", 1), timed_row("two", 1)});

@@ -1,5 +1,5 @@
 #include "bench/results/result_file.h"
-#include "bench/results/result_text.h"
+#include "bench/results/result_value.h"
 #include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,5 @@
 #include "bench/terminal/sheet.h"
 
-#include "bench/terminal/colour.h"
 #include "bench/terminal/text.h"
 #include "core/base/error.h"
 
@@ -29,7 +28,7 @@ TEST(Table, numbers_stand_right_texts_left_and_empty_columns_are_left_out)
                                 "Dürer       12      -\n");
 }
 
-TEST(Table, a_heading_stands_before_its_rows_in_text_and_in_bold_in_markdown)
+TEST(Table, a_heading_is_before_its_rows_in_text_and_in_bold_in_markdown)
 {
     Table table(std::vector<Column>{{"a", "a"}});
     table.add_heading("first");

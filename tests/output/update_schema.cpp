@@ -65,7 +65,7 @@ std::string in_one_line(const json& value)
     return fmt::format(fmt::runtime(value.is_object() ? "{{ {} }}" : "[{}]"), text);
 }
 
-/// Behind `before` characters of its line: in one line where that fits, else a line a part; texts fill their lines.
+/// After `before` characters of its line: in one line if that fits, else a line per part; texts fill their lines.
 std::string laid_out(const json& value, std::size_t margin, std::size_t before)
 {
     const std::string line = in_one_line(value);
@@ -105,7 +105,7 @@ int main(int count, char** arguments)
     if (after == before) return 0;
     if (checks) {
         fmt::print(stderr,
-                   "{} is not what row_fields() says; this brings it up to date:\n"
+                   "{} is not what row_fields() says; this updates it:\n"
                    "cmake --build build/release --target result_schema\n",
                    path);
         return 1;

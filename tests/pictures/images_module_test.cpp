@@ -1,4 +1,4 @@
-#include "bench/pictures/picture_writer.h"
+#include "bench/pictures/images.h"
 
 #include "tests/support/temporary_folder.h"
 
@@ -82,7 +82,7 @@ TEST_F(ImagesModule, exr_comes_back_as_linear_light)
         "a.exr", [](double linear) { return linear; }, 0); // all are halves
 }
 
-TEST_F(ImagesModule, colours_beyond_the_screen_are_clamped)
+TEST_F(ImagesModule, colours_outside_the_screens_range_are_clamped)
 {
     Pixmap pixmap(3, 2, {7.0f, -1.0f, std::numeric_limits<float>::quiet_NaN()});
     writer_.write(folder_ / "a.png", pixmap);

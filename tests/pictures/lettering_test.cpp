@@ -1,4 +1,4 @@
-#include "bench/pictures/lettering.h"
+#include "bench/pictures/false_colour.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ std::string drawn(std::string_view text, std::uint32_t scale = 1)
 
 } // namespace
 
-TEST(DrawText, every_letter_has_a_shape_of_its_own)
+TEST(DrawText, every_letter_has_its_own_shape)
 {
     std::set<std::string> shapes;
     const std::string letters = "0123456789abcdefghijklmnopqrstuvwxyz.,:;-_+/()%=<>";

@@ -1,4 +1,4 @@
-#include "bench/pictures/picture_name.h"
+#include "bench/pictures/images.h"
 
 #include "core/base/error.h"
 
@@ -17,7 +17,7 @@ TEST(PicturePath, a_single_picture_has_the_name_that_was_given)
     EXPECT_EQ(picture_path("/none/a.exr", key, ".exr", true), "/none/a.exr");
 }
 
-TEST(PicturePath, several_pictures_have_what_tells_them_apart_before_the_ending)
+TEST(PicturePath, several_pictures_have_their_distinction_before_the_ending)
 {
     EXPECT_EQ(picture_path("/none/a.exr", key, ".exr", false), "/none/a-bunny-3-steps.exr");
 }

@@ -1,4 +1,4 @@
-#include "bench/pictures/ppm.h"
+#include "bench/pictures/images.h"
 
 #include <gtest/gtest.h>
 #include <limits>
@@ -19,7 +19,7 @@ TEST(Ppm, every_byte_survives_the_way_to_linear_light_and_back)
         EXPECT_EQ(to_srgb(from_srgb(byte).b), byte);
 }
 
-TEST(Ppm, light_beyond_what_a_screen_shows_is_clamped)
+TEST(Ppm, light_outside_the_screens_range_is_clamped)
 {
     EXPECT_EQ(to_srgb(-1.0f), 0);
     EXPECT_EQ(to_srgb(7.0f), 255);

@@ -12,7 +12,7 @@ namespace {
 const std::string two_pixels("\x01\x02\x03\0\x0a\xff", 6);
 const std::string ppm = "P6\n2 1\n255\n" + two_pixels;
 
-/// The pixels of a PNG of one row, which its one IDAT chunk holds behind the filter's byte.
+/// The pixels of a PNG of one row, which its one IDAT chunk holds after the filter's byte.
 std::string pixels_of(const Png& png)
 {
     const std::size_t data = png.bytes.find("IDAT") + 4, end = png.bytes.size() - 12 - 4;

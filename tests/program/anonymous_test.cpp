@@ -1,4 +1,4 @@
-#include "bench/options/anonymous.h"
+#include "bench/options/identity.h"
 
 #include "tests/support/program_fixture.h"
 
@@ -54,7 +54,7 @@ TEST(Anonymous, leaves_no_folder_of_a_person)
     EXPECT_EQ(anonymous("/data/people/anne/x.ply"), "x.ply");
 }
 
-TEST(Anonymous, leaves_all_else_as_it_is)
+TEST(Anonymous, leaves_all_else_unchanged)
 {
     for (const char* const text :
          {"cdt/maria/tet80/bunny/primary/math:exact/api:openmp", "Mrays/s", "1 / 2", "a /", "/", "", "and/or",
@@ -99,7 +99,7 @@ TEST_F(AnonymousProgram, results_hold_neither_the_hosts_name_nor_a_folder)
     }
 }
 
-TEST_F(AnonymousProgram, google_benchmark_names_the_host_unless_told_otherwise)
+TEST_F(AnonymousProgram, google_benchmark_names_the_host_unless_anonymous)
 {
     if (!can_name_a_host()) GTEST_SKIP() << "this system lets nobody name a host: 'unshare -u' is not permitted";
     ASSERT_EQ(

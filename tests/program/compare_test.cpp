@@ -18,7 +18,7 @@ using Json = nlohmann::json;
 /// `tetrace compare` of results that `tetrace bench` made, changed here and there.
 class Compare : public ProgramTest {
 protected:
-    /// What bench wrote, with seven samples a row that leave no doubt.
+    /// What bench wrote, with seven samples per row that leave no doubt.
     Json result()
     {
         const Ended ended = bench(std::string("--out measured.json") + nine_rows);
@@ -64,7 +64,7 @@ TEST_F(Compare, finds_a_result_the_same_as_itself)
     EXPECT_TRUE(contains(unwrapped(ended), "is at most 1 %"));
 }
 
-TEST_F(Compare, exits_with_1_on_a_regression_beyond_the_tolerance)
+TEST_F(Compare, exits_with_1_on_a_regression_over_the_tolerance)
 {
     const auto slower = [](Json& section) { slow_down(section["rows"][1], 1.05); };
     const Ended ended = compare_with(slower);
@@ -100,7 +100,7 @@ TEST_F(Compare, counts_a_failed_row_as_a_regression_and_a_missing_one_unless_all
     EXPECT_EQ(compare_with(drop, "--allow-missing").code, 0);
 }
 
-TEST_F(Compare, tells_what_else_differs)
+TEST_F(Compare, reports_what_else_differs)
 {
     const Ended ended = compare_with([](Json& section) {
         section["commit"] = "fedcba9";
@@ -122,7 +122,7 @@ TEST_F(Compare, calls_machines_by_their_labels)
     EXPECT_EQ(bench("--label ''").code, 2);
 }
 
-TEST_F(Compare, tells_of_threads_compiler_flags_and_version)
+TEST_F(Compare, reports_threads_compiler_flags_and_version)
 {
     const Ended ended = compare_with([](Json& section) {
         section["version"] = "0.0.1";

@@ -50,7 +50,7 @@ class CudaProgram : public ::testing::Test {
 protected:
     void SetUp() override
     {
-        if (contains(run("devices").out, "was built without nvcc")) GTEST_SKIP() << "there is no nvcc and no NVRTC";
+        if (contains(run("devices").out, "was built without nvcc")) GTEST_SKIP() << "without nvcc and NVRTC";
     }
 };
 
@@ -63,7 +63,7 @@ TEST_F(CudaProgram, lists_the_stub_as_an_emulation)
     EXPECT_TRUE(contains(ended.out, "cuda       host emulation of CUDA, emulated"));
 }
 
-TEST_F(CudaProgram, measures_the_stub_beside_openmp)
+TEST_F(CudaProgram, measures_the_stub_and_openmp)
 {
     const Ended ended = run(small_bench);
     EXPECT_EQ(ended.code, 0) << ended.errors;

@@ -1,6 +1,6 @@
 // For LD_PRELOAD: a disk that fails. FAULTY_DISK is "<call> <how>", or "<call>:<n> <how>" for the n-th call of its
 // kind; calls are write, sync and rename, hows are io (EIO), full (ENOSPC), and for write short: not all bytes are
-// taken. Regular files alone are on this disk, and the standard streams never are.
+// taken. Only regular files are on this disk, and the standard streams never are.
 #include "tests/isolation/misbehaviour.h"
 
 #include <cerrno>

@@ -47,7 +47,7 @@ TEST_F(Files, pictures_are_whole_or_not_written)
 {
     const std::string render = std::string("render --views 0") + tiny;
     expect_refusal(render + "--out a.ppm", "a.ppm");
-    if (run(render + "--out good.png").code == 3) GTEST_SKIP() << "without OpenImageIO there are PPM files alone";
+    if (run(render + "--out good.png").code == 3) GTEST_SKIP() << "without OpenImageIO there are only PPM files";
     expect_refusal(render + "--out a.exr", "a.exr");
     expect_refusal(render + "--picture steps --out a.png", "a.png");
 }
@@ -85,7 +85,7 @@ TEST_F(Files, a_dash_means_standard_output)
     EXPECT_FALSE(std::filesystem::exists(folder_ / "-"));
 }
 
-TEST_F(Files, one_exit_code_tells_of_every_missing_file)
+TEST_F(Files, one_exit_code_reports_every_missing_file)
 {
     for (const char* const arguments :
          {"report none.json", "compare none.json none.json", "bench --backend openmp --scene none.ply",

@@ -1,5 +1,5 @@
 // For LD_PRELOAD: a clock of the day that somebody sets again and again, by a day to and fro and by years. The clock
-// that only counts on (CLOCK_MONOTONIC) is left alone: nobody can set it.
+// that only counts on (CLOCK_MONOTONIC) is unchanged: nobody can set it.
 #include <ctime>
 #include <sys/syscall.h>
 #include <sys/time.h>

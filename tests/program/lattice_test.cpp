@@ -27,13 +27,13 @@ TEST_F(LatticeProgram, is_right_with_every_method_layout_and_schedule)
     EXPECT_EQ(result.at("scenes")[0].at("tets"), 6 * 7 * 7 * 7);
     std::uint64_t hits = 0;
     for (const json& row : result.at("rows")) {
-        if (row.at("status") == "unsupported") continue; // Embree 4 has no streams
+        if (row.at("status") == "unsupported") continue; // Embree 4 lacks streams
         hits += row.at("counts").at("hits").get<std::uint64_t>();
     }
     EXPECT_GT(hits, 0u);
 }
 
-TEST_F(LatticeProgram, tells_both_numbers_where_a_device_s_buffers_cannot_hold_it)
+TEST_F(LatticeProgram, reports_both_numbers_if_a_device_s_buffers_cannot_hold_it)
 {
     const Ended ended = run("bench --scene lattice:12 --backend openmp,cuda-host --layout tet80,tet20 --method project "
                             "--size 16 --samples 3 --sample-time 0 --buffer-limit 60000 --format json");

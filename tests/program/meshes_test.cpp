@@ -187,7 +187,7 @@ TEST_F(Meshes, whose_tets_are_still_tetgens_are_listed_so_with_the_reason)
     EXPECT_EQ(made["tets_kind"], "cdt");
     EXPECT_EQ(made["cost_after"], made["cost_before"]);
     EXPECT_EQ(made["scene_record"]["optimised"]["reason"], "the optimiser was stopped before it had bettered any");
-    EXPECT_FALSE(contains(ended.out, "the optimiser in ")) << "it has no operations to list";
+    EXPECT_FALSE(contains(ended.out, "the optimiser in ")) << "it has not listed operations";
 }
 
 // The limit of time ends the builder before it has tets.

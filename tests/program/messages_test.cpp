@@ -1,4 +1,4 @@
-// What the program says: each thing once, where it belongs.
+// What the program says: each thing once, in its place.
 #include "tests/support/program_fixture.h"
 
 #include <cstdlib>
@@ -73,7 +73,7 @@ private:
 
 } // namespace
 
-TEST_F(Messages, a_mesh_that_intersects_itself_is_told_once_with_one_exit_code)
+TEST_F(Messages, a_mesh_that_intersects_itself_is_reported_once_with_one_exit_code)
 {
     give_mesh_that_intersects_itself();
     const ScopedVariable builder("TETRACE_BUILDER", folder_ / "builder");
@@ -130,7 +130,7 @@ TEST_F(Messages, tables_are_in_colour_on_terminals_and_nowhere_else)
     {
         const ScopedVariable none("NO_COLOR", static_cast<const char*>(nullptr));
         const std::string screen = shown("--out c.txt");
-        if (screen == "no terminal") GTEST_SKIP() << "this system has no pseudo-terminals";
+        if (screen == "no terminal") GTEST_SKIP() << "this system lacks pseudo-terminals";
         EXPECT_TRUE(contains(screen, "\x1b[33mMISSING\x1b[0m")) << screen;
         EXPECT_FALSE(contains(file("c.txt"), "\x1b")) << "a file has none";
         EXPECT_FALSE(contains(run("compare a.json b.json").out, "\x1b"));

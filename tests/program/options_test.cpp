@@ -223,7 +223,7 @@ TEST(OptionValues, views_take_numbers_ranges_and_strides)
         EXPECT_THROW(static_cast<void>(parse_views(bad, 4)), Error) << bad;
 }
 
-TEST(OptionValues, a_view_beyond_the_set_is_named)
+TEST(OptionValues, a_view_outside_the_set_is_named)
 {
     EXPECT_TRUE(contains(rejection({"bench", "--views", "4"}), "view 4 does not exist; this camera set has views 0 "
                                                                "to 3"));
@@ -336,7 +336,7 @@ TEST(Options, all_builds_are_traced_unless_some_are_named)
     EXPECT_THROW((void)parse_options({"bench", "--builds", "paper"}), Error);
 }
 
-TEST(Options, searches_are_tets_times_rays_and_the_papers_unless_told)
+TEST(Options, searches_are_tets_times_rays_and_the_papers_by_default)
 {
     EXPECT_EQ(parse_options({"reproduce", "table5"}).searches, (SearchSize{10'000, 16'384}));
     EXPECT_EQ(parse_options({"reproduce", "--searches", "3x1048576"}).searches, (SearchSize{3, 1'048'576}));

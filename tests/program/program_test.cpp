@@ -58,7 +58,8 @@ TEST_F(Program, report_of_a_folder_is_the_page_of_a_campaign)
     EXPECT_EQ(ended.code, 0) << ended.errors;
     EXPECT_TRUE(contains(ended.errors, "1 of these 3 left out")) << ended.errors;
     const std::string page = file("page.html");
-    for (const char* const part : {"id=\"index\"", "host/b.json", "results/a.json", "notes.json", "id=\"beside\""})
+    for (const char* const part :
+         {"id=\"index\"", "host/b.json", "results/a.json", "notes.json", "id=\"compared-machines\""})
         EXPECT_TRUE(contains(page, part)) << part;
     EXPECT_EQ(run("report results --out results/a.json").code, 2) << "it would replace an input";
     std::filesystem::create_directory(folder_ / "empty");
@@ -267,7 +268,7 @@ TEST_F(Program, a_check_that_ends_early_says_why_in_its_junit_and_on_standard_er
     }
 }
 
-TEST_F(Program, a_device_that_is_missing_is_told_in_one_line)
+TEST_F(Program, a_device_that_is_missing_is_reported_in_one_line)
 {
     for (const char* const verb : {"check", "bench", "render"}) {
         const Ended ended = run(std::string(verb) + " --scene cubes --backend openmp,embree --device nvidia");
@@ -315,14 +316,14 @@ TEST_F(Program, a_scene_that_cannot_be_loaded_ends_its_rows_and_not_the_others)
     }
 }
 
-TEST_F(Program, a_result_that_cannot_be_written_is_told_before_any_work)
+TEST_F(Program, a_result_that_cannot_be_written_is_reported_before_any_work)
 {
     const Ended ended = bench("--out no/such/folder/result.json");
     EXPECT_EQ(ended.code, 2);
     EXPECT_TRUE(contains(ended.errors, "no/such/folder/result.json")) << ended.errors;
 }
 
-TEST_F(Program, google_benchmarks_result_that_cannot_be_written_is_told_before_any_work)
+TEST_F(Program, google_benchmarks_result_that_cannot_be_written_is_reported_before_any_work)
 {
     const Ended ended = bench("--benchmark_out=no/such/folder/gb.json");
     EXPECT_EQ(ended.code, 2);
@@ -356,17 +357,17 @@ TEST_F(Program, google_benchmarks_context_is_added_once)
     EXPECT_FALSE(contains(ended.errors, "ontext")) << ended.errors;
 }
 
-TEST_F(Program, a_result_tells_the_processors_family_model_and_stepping)
+TEST_F(Program, a_result_has_the_processors_family_model_and_stepping)
 {
     const std::string processor = read_text("/proc/cpuinfo");
-    if (!contains(processor, "cpu family")) GTEST_SKIP() << "this system does not tell them of its processor";
+    if (!contains(processor, "cpu family")) GTEST_SKIP() << "this system does not report them of its processor";
     const auto host = nlohmann::json::parse(run("devices --format json").out)["tetrace"]["host"];
     EXPECT_TRUE(contains(processor, fmt::format("cpu family\t: {}\n", host["family"].get<unsigned>())));
     EXPECT_TRUE(contains(processor, fmt::format("model\t\t: {}\n", host["model"].get<unsigned>())));
     EXPECT_TRUE(contains(processor, fmt::format("stepping\t: {}\n", host["stepping"].get<unsigned>())));
 }
 
-TEST_F(Program, a_result_tells_the_threads_that_worked)
+TEST_F(Program, a_result_has_the_threads_that_worked)
 {
     const auto threads = [&](const std::string& more) {
         return nlohmann::json::parse(bench("--layout tet80 --format json " + more).out)["tetrace"]["threads"];

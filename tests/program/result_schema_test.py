@@ -44,7 +44,7 @@ FIGURE = {
     "pictures": ["figure6/slowest.png"],
     "notes": [],
 }
-# What lies below these has keys or types of its own choice: Google Benchmark's, scenes' and devices' names, columns.
+# Everything below these has keys or types of its own choice: Google Benchmark's, scenes' and devices' names, columns.
 FREE_KEYS = {("matrix",), ("matrix", "*"), ("matrix", "*", "*")}
 
 

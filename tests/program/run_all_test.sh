@@ -34,7 +34,7 @@ steps_that_end_well_give_0)
         grep -q 'it ran' "$out/$step.txt" || fail "what $step printed is not kept"
     done
     summary_has '^0 steps failed'
-    [ ! -e "$out/.work" ] || fail "its working folder is left behind" ;;
+    [ ! -e "$out/.work" ] || fail "its working folder is left over" ;;
 a_hang_and_a_failure_lose_no_other_step)
     tetrace_is 'case $1 in
         check) echo partly; trap "" TERM; while :; do sleep 1; done ;;

@@ -204,11 +204,11 @@ TEST(Claims, no_correlation_of_few_views_or_of_what_does_not_vary)
                               twice = {2, 4, 6, 8, 10, 12, 14, 16, 18, 20};
     EXPECT_FALSE(correlation({1, 2, 3}, {1, 2, 3}));
     EXPECT_FALSE(correlation(same, x));
-    EXPECT_EQ(correlation(x, twice).value().value, 1) << "a perfect line has no infinite z";
+    EXPECT_EQ(correlation(x, twice).value().value, 1) << "z is finite for a perfect line";
     EXPECT_THROW((void)correlation(x, {1, 2, 3}), Error);
 }
 
-TEST(Claims, the_intercepts_share_tells_a_line_from_proportion)
+TEST(Claims, the_intercepts_share_distinguishes_a_line_from_proportion)
 {
     std::vector<double> x, proportional, line;
     for (int view = 0; view < 60; ++view) {

@@ -91,7 +91,7 @@ TEST_F(Watched, searches_are_watched_too)
 }
 
 // Its pulse is the first view once more: the answers to the current one must be read before or after it.
-TEST_F(Watched, a_gpu_has_a_pulse_of_its_own_in_each_scene_and_keeps_its_answers)
+TEST_F(Watched, a_gpu_has_its_own_calibration_in_each_scene_and_keeps_its_answers)
 {
     MachineWatch watch(host(), {}, clock());
     std::vector<SceneRun> scenes;

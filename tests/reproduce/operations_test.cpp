@@ -44,7 +44,7 @@ TEST(Operations, a_start_takes_three_side_products)
     }
 }
 
-TEST(Operations, the_table_has_the_papers_beside_them_and_its_claims_decided)
+TEST(Operations, the_table_has_the_papers_next_to_them_and_its_claims_decided)
 {
     const PaperTable table = operations_table();
     ASSERT_EQ(table.rows.size(), 6u);

@@ -47,7 +47,7 @@ SceneRun run_of(const std::string& scene, LikenessKind kind = LikenessKind::pape
 
 } // namespace
 
-TEST(PairClaims, the_papers_build_decides_where_there_is_one)
+TEST(PairClaims, the_papers_build_decides_if_there_is_one)
 {
     SceneRun ours = run_of("bunny", LikenessKind::other_tets), papers = run_of("bunny");
     papers.build.build = papers_build;
@@ -101,7 +101,7 @@ TEST(PairClaims, tets_for_rays_have_a_claim_of_their_own_and_no_number_of_the_pa
                 if (const auto* number = std::get_if<Quantity>(&cell)) {
                     EXPECT_FALSE(number->paper) << table.id;
                 }
-    EXPECT_EQ(figure6({&rays})[0].series.size(), 2u) << "maria on two layouts alone";
+    EXPECT_EQ(figure6({&rays})[0].series.size(), 2u) << "only maria on two layouts";
 }
 
 TEST(PairClaims, tets_for_rays_are_judged_by_the_fastest_bvh_of_the_device_which_the_verdict_names)
@@ -149,10 +149,10 @@ TEST(PairClaims, another_mesh_decides_nothing_and_says_why)
     const Claim& claim = claim_of(table, "table6-bvh-is-faster-on-armadillo-cpu");
     EXPECT_EQ(claim.verdict, ClaimVerdict::not_testable);
     EXPECT_TRUE(contains(claim.evidence, "another mesh"));
-    EXPECT_TRUE(contains(claim.evidence, "frames/s")) << "our figures stand there still";
+    EXPECT_TRUE(contains(claim.evidence, "frames/s")) << "our figures are still there";
 }
 
-TEST(PairClaims, the_larger_amplitude_is_told_without_the_extreme_views)
+TEST(PairClaims, the_larger_amplitude_is_found_without_the_extreme_views)
 {
     SceneRun run = run_of("bunny");
     const std::string id = "table6-cdt-has-the-larger-amplitude-cpu";
@@ -166,7 +166,7 @@ TEST(PairClaims, the_larger_amplitude_is_told_without_the_extreme_views)
     with_one_slow_view.back() = 1;
     for (std::size_t i = 0; i < run.rows.size(); ++i)
         if (is_cdt(run.rows[i])) set_times(run, i, with_one_slow_view);
-    EXPECT_EQ(verdict_of({&run}, id), ClaimVerdict::not_testable) << "one view is no amplitude";
+    EXPECT_EQ(verdict_of({&run}, id), ClaimVerdict::not_testable) << "one view does not make an amplitude";
     set_ranges(run, 8, 2);
     run.sampling = Sampling::chosen;
     EXPECT_EQ(verdict_of({&run}, id), ClaimVerdict::not_testable);
@@ -209,7 +209,7 @@ TEST(PairClaims, a_mean_rate_is_of_all_three_scenes_or_of_none)
     EXPECT_EQ(mean_rate_claim(all, paper::Place::gpu).verdict, ClaimVerdict::not_testable) << "no GPU";
 }
 
-TEST(PairClaims, rates_stand_beside_the_papers_on_its_kinds_of_devices_with_a_ratio_where_the_mesh_is_its)
+TEST(PairClaims, rates_are_next_to_the_papers_on_its_kinds_of_devices_with_a_ratio_for_its_mesh)
 {
     SceneRun run = run_of("bunny");
     set_rate(run, 21);
@@ -234,7 +234,7 @@ TEST(PairClaims, rates_stand_beside_the_papers_on_its_kinds_of_devices_with_a_ra
     EXPECT_FALSE(cell(Method::maria).paper);
 }
 
-TEST(PairClaims, figure6_has_the_papers_two_views_beside_bunny_on_a_cpu_alone)
+TEST(PairClaims, figure6_has_the_papers_two_views_next_to_bunny_only_on_a_cpu)
 {
     SceneRun run = run_of("bunny");
     const double papers_images = papers_pixels / pixels;
@@ -248,12 +248,12 @@ TEST(PairClaims, figure6_has_the_papers_two_views_beside_bunny_on_a_cpu_alone)
     EXPECT_EQ(cell("fewest_mtets").paper, 9.6);
     EXPECT_EQ(cell("most_mtets").paper, 22.71);
     EXPECT_NEAR(cell("fewest_mtets").ours.value, 1e-6 * papers_pixels * cell("fewest_tets").ours.value, 1e-9);
-    EXPECT_NEAR(cell("shortest_ms").ratio().value(), 2, 1e-9) << "80.2 ms an image of its size";
+    EXPECT_NEAR(cell("shortest_ms").ratio().value(), 2, 1e-9) << "80.2 ms per image of its size";
     EXPECT_EQ(cell("longest_ms").paper, 122);
     EXPECT_EQ(figure6({&run})[0].series.back().name, "the paper's views A and B, on its Core i7-4930K, 6 cores");
     be_like(run, "bunny", LikenessKind::other_mesh);
     EXPECT_FALSE(cell("fewest_mtets").ratio());
-    EXPECT_EQ(figure6({&run})[0].series.size(), 2u) << "maria on two layouts alone";
+    EXPECT_EQ(figure6({&run})[0].series.size(), 2u) << "only maria on two layouts";
     be_like(run, "banana", LikenessKind::papers_counts);
     EXPECT_FALSE(cell("fewest_mtets").paper) << "its figure is of bunny";
     be_like(run, "bunny", LikenessKind::papers_counts);
@@ -263,7 +263,7 @@ TEST(PairClaims, figure6_has_the_papers_two_views_beside_bunny_on_a_cpu_alone)
     EXPECT_FALSE(cell("shortest_ms").paper) << "its times are of its CPU";
 }
 
-TEST(PairClaims, linear_time_need_not_be_proportional_and_a_tet_that_takes_longer_is_told)
+TEST(PairClaims, linear_time_need_not_be_proportional_and_a_tet_that_takes_longer_is_reported)
 {
     SceneRun run = run_of("bunny");
     const std::size_t row = find_row(run, Layout::tet80, Method::maria);

@@ -111,7 +111,7 @@ TEST_F(Reproduce, figure6_draws_an_emulated_device_apart_from_the_processor)
     }
     EXPECT_EQ(figures[0]["pictures"].size(), 4u);
     EXPECT_EQ(figures[1]["pictures"].size(), 0u) << "they are the scene's";
-    EXPECT_EQ(figures[0]["notes"].size(), figures[1]["notes"].size() + 1) << "which tells of them";
+    EXPECT_EQ(figures[0]["notes"].size(), figures[1]["notes"].size() + 1) << "which reports them";
 }
 
 TEST_F(Reproduce, table3_has_the_scenes_counts_and_a_rate_a_row)
@@ -120,7 +120,7 @@ TEST_F(Reproduce, table3_has_the_scenes_counts_and_a_rate_a_row)
     ASSERT_EQ(ended.code, 0) << ended.errors;
     const json section = result("r.json");
     const json scenes = of_id(section["tables"], "table3")["rows"];
-    ASSERT_EQ(scenes.size(), 1u) << "no TetGen makes this scene: there is no paper's build of it";
+    ASSERT_EQ(scenes.size(), 1u) << "TetGen does not make this scene: it lacks a paper's build";
     EXPECT_EQ(scenes[0]["tets"]["value"], 6 * 6 * 6 * 6);
     EXPECT_LT(scenes[0]["tet80_mib"]["value"], scenes[0]["tet96_mib"]["value"]);
     const json rates = of_id(section["tables"], "table3-rates")["rows"];
@@ -128,7 +128,7 @@ TEST_F(Reproduce, table3_has_the_scenes_counts_and_a_rate_a_row)
     EXPECT_GT(rates[0]["mrays_per_s"]["value"], 0);
 }
 
-TEST_F(Reproduce, table3_has_a_papers_build_of_the_papers_scenes_alone)
+TEST_F(Reproduce, table3_has_a_papers_build_only_of_the_papers_scenes)
 {
     const std::string octahedron = "OFF\n6 8 0\n1 0 0\n-1 0 0\n0 1 0\n0 -1 0\n0 0 1\n0 0 -1\n"
                                    "3 0 2 4\n3 2 1 4\n3 1 3 4\n3 3 0 4\n3 2 0 5\n3 1 2 5\n3 3 1 5\n3 0 3 5\n";
@@ -145,7 +145,7 @@ TEST_F(Reproduce, table3_has_a_papers_build_of_the_papers_scenes_alone)
         EXPECT_TRUE(contains(table["claims"][0]["evidence"], "Another mesh: 8 triangles, but the paper's counts are "
                                                              "from 345,944"));
         EXPECT_EQ(table["rows"].back()["tets_kind"], "rays");
-        EXPECT_FALSE(table["rows"].back()["tets"].contains("paper")) << "it has no tets for rays";
+        EXPECT_FALSE(table["rows"].back()["tets"].contains("paper")) << "it lacks tets for rays";
         const json row = table["rows"][3];
         EXPECT_EQ(row["tets_kind"], "cdt");
         EXPECT_EQ(row["likeness"], "other mesh");
@@ -194,14 +194,14 @@ TEST_F(Reproduce, builds_choose_those_that_a_scene_has)
     EXPECT_EQ(builds(" --builds rays --scene cubes"), "dragon rays; armadillo rays; cubes ours; ");
 }
 
-TEST_F(Reproduce, table6_has_maria_beside_the_bvhs_and_no_other_table_has_them)
+TEST_F(Reproduce, table6_has_maria_and_the_bvhs_and_no_other_table_has_them)
 {
     const std::string common = " --backend openmp,embree --layout tet80 --size 16 --samples 3 --views 0-1281:120 ";
     const Ended ended = run("table6 --out r.json" + common);
     ASSERT_EQ(ended.code, 0) << ended.errors;
     const json section = result("r.json");
     ASSERT_EQ(section["rows"].size(), 4 + embree_rows())
-        << "maria alone of the methods, bvh2, bvh4, cwbvh, and Embree's";
+        << "only maria of the methods, bvh2, bvh4, cwbvh, and Embree's";
     ASSERT_EQ(of_id(section["tables"], "table6")["rows"].size(), 4 + embree_rows());
     ASSERT_EQ(of_id(section["tables"], "table6-pairs")["rows"].size(), 3 + traced_embree_rows());
     const json pairs = of_id(section["tables"], "table6-pairs")["rows"];

@@ -226,7 +226,7 @@ TEST_F(Resume, table5_goes_on_after_kill_9_to_the_same_result)
     const std::string kept = before.substr(0, before.rfind('\n') + 1);
     EXPECT_EQ(after.substr(0, kept.size()), kept) << "finished batches are not done again";
     EXPECT_EQ(lines("r.json.journal"), 1u + 20 + 1 + 1) << "head, batches, yardstick, end";
-    ASSERT_EQ(run(arguments + " --resume").code, 0) << "once more, from the journal alone";
+    ASSERT_EQ(run(arguments + " --resume").code, 0) << "once more, only from the journal";
     const json again = result("r.json");
     EXPECT_EQ(again["tables"], resumed["tables"]);
     EXPECT_EQ(again["devices"], resumed["devices"]) << "their bandwidth is not measured again";
@@ -257,7 +257,7 @@ TEST_F(Resume, goes_on_after_kill_9_to_the_same_result)
         EXPECT_EQ(first, second) << "line " << line;
     }
     EXPECT_EQ(lines("killed.json.journal"), 1u + 33 + 1 + 1) << "head, views, yardstick, end";
-    EXPECT_EQ(run(arguments + "killed.json --resume").code, ended.code) << "once more, from the journal alone";
+    EXPECT_EQ(run(arguments + "killed.json --resume").code, ended.code) << "once more, only from the journal";
     const json again = result("killed.json");
     EXPECT_EQ(of_id(again["figures"], "figure6-cubes-cpu")["series"],
               of_id(resumed["figures"], "figure6-cubes-cpu")["series"]);

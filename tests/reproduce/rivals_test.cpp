@@ -1,6 +1,5 @@
 #include "bench/rivals/judged_claim.h"
 #include "bench/rivals/rival_run.h"
-#include "bench/rivals/rival_tables.h"
 #include "tests/support/fake_backend.h"
 #include "tests/support/row_runs.h"
 
@@ -126,7 +125,7 @@ TEST(Rivals, a_rival_that_was_skipped_could_be_the_fastest)
     EXPECT_EQ(verdict_of(claim_of(), rows), untested);
     EXPECT_NE(evidence_of(claim_of(), rows).find("no time"), std::string::npos);
     rows[2].outcome = Skipped{Status::unsupported, "no AVX2"};
-    EXPECT_EQ(verdict_of(claim_of(), rows), holds) << "a device without the rival has no faster one";
+    EXPECT_EQ(verdict_of(claim_of(), rows), holds) << "a device without the rival does not have a faster one";
 }
 
 TEST(Rivals, a_noisy_row_decides_nothing)
@@ -275,7 +274,7 @@ TEST(Rivals, options_that_leave_out_an_api_of_a_gpu_are_seen)
     options.backends = {"cuda"};
     EXPECT_TRUE(left_out(options, backends).apis);
     options.backends = {"cuda", "vulkan"};
-    EXPECT_FALSE(left_out(options, backends).apis) << "the other GPU has no rows at all";
+    EXPECT_FALSE(left_out(options, backends).apis) << "the other GPU is without rows";
     EXPECT_FALSE(left_out(options, backends).kernels);
     options.math = {MathMode::exact};
     EXPECT_FALSE(left_out(options, backends).kernels);
@@ -283,7 +282,7 @@ TEST(Rivals, options_that_leave_out_an_api_of_a_gpu_are_seen)
     EXPECT_TRUE(left_out(options, backends).kernels) << "packets";
 }
 
-TEST(Rivals, the_old_figure_stands_next_to_the_new_one)
+TEST(Rivals, the_old_figure_is_next_to_the_new_one)
 {
     const std::string evidence = evidence_of(claim_of(), list(row_of(half32, 1), row_of(bvh2, 2)));
     EXPECT_NE(evidence.find("Then 1.50 bunny (a machine)."), std::string::npos) << evidence;
@@ -295,7 +294,7 @@ TEST(Rivals, the_old_figure_stands_next_to_the_new_one)
     EXPECT_EQ(std::get<Quantity>(table.rows.at(0).at(1)).ours.value, 1) << "one holds";
 }
 
-TEST(Rivals, every_claim_has_a_name_of_its_own_and_a_scene_of_the_run_or_of_the_paper)
+TEST(Rivals, every_claim_has_its_own_name_and_a_scene_of_the_run_or_of_the_paper)
 {
     std::vector<std::string_view> ids;
     for (const RivalClaim& claim : rival_claims()) {

@@ -1,4 +1,4 @@
-// Samples of `reproduce`: how long they last, beside which rows they are taken, and what becomes of throttled ones.
+// Samples of `reproduce`: how long they last, next to which rows they are taken, and what happens to throttled ones.
 #include "bench/measuring/figures.h"
 #include "bench/reproduce/scene_run.h"
 #include "bench/reproduce/search_run.h"
@@ -27,7 +27,7 @@ public:
     }
 };
 
-/// Is throttled at some of its readings, and the passes beside them are slower then.
+/// Is throttled at some of its readings, and the passes at that time are slower.
 class SlowWhileThrottled : public ThrottledAt {
 public:
     SlowWhileThrottled(double& pass_s, double slow_s, int& asked, int first, int last)
@@ -119,7 +119,7 @@ TEST_F(Samples, of_a_fast_device_last_as_long_as_asked_for_and_of_a_slow_one_are
         if (passes[i] > 1) {
             EXPECT_EQ(launches_of(launches_, {i, passes[i]}), views * samples);
         }
-        // To verify and to warm up, a pass alone before each sample or the sample itself, the first view at the end.
+        // To verify and to warm up, a single pass before each sample or the sample itself, the first view at the end.
         EXPECT_EQ(launches_of(launches_, {i, 1}), views * (2 + samples) + 1);
     }
 }
@@ -196,7 +196,7 @@ TEST_F(Samples, are_taken_again_while_the_gpu_is_throttled)
     EXPECT_EQ(scene.images[0][1].gpu->dropped, 2u) << "in the first sample of the second view";
     EXPECT_FALSE(scene.images[0][0].gpu->dropped + scene.images[0][2].gpu->dropped > 0);
     for (const ImageRecord& image : scene.images[0])
-        EXPECT_EQ(image.samples_s, std::vector<double>(samples, 1e-3)) << "the slow ones are no samples";
+        EXPECT_EQ(image.samples_s, std::vector<double>(samples, 1e-3)) << "the slow ones are dropped";
 }
 
 TEST_F(Samples, of_a_gpu_that_stays_throttled_make_its_row_noisy_which_says_why)
@@ -211,7 +211,7 @@ TEST_F(Samples, of_a_gpu_that_stays_throttled_make_its_row_noisy_which_says_why)
     EXPECT_EQ(scene.rows[1].disturbance, "");
 }
 
-TEST_F(Samples, and_what_a_gpu_told_of_them_come_back_from_the_journal)
+TEST_F(Samples, and_the_state_of_a_gpu_during_them_come_back_from_the_journal)
 {
     slow_s_ = 1e-3; // the host's clock, which is real, shows no slow pass
     const auto path = folder_ / "r.json.journal";

@@ -263,7 +263,7 @@ TEST(SearchRun, rows_on_all_threads_say_how_many)
     EXPECT_TRUE(contains(table.claims[0].evidence, "ms06 and maria do not both have rates"));
 }
 
-TEST(SearchRun, the_fastest_is_told_from_the_rows_on_one_thread)
+TEST(SearchRun, the_fastest_is_taken_from_the_rows_on_one_thread)
 {
     SearchRun run;
     const auto add = [&](Method method, unsigned threads, double seconds) {
@@ -284,7 +284,7 @@ TEST(SearchRun, the_fastest_is_told_from_the_rows_on_one_thread)
     EXPECT_EQ(table5(run, {}).claims[0].verdict, ClaimVerdict::not_testable) << "not of all five";
 }
 
-TEST(SearchRun, claims_of_older_methods_are_told_from_one_thread_and_tested_against_the_papers_share)
+TEST(SearchRun, claims_of_older_methods_are_decided_on_one_thread_and_tested_against_the_papers_share)
 {
     SearchRun run;
     const auto seconds_of = [](Method method) {
@@ -305,7 +305,7 @@ TEST(SearchRun, claims_of_older_methods_are_told_from_one_thread_and_tested_agai
     for (std::size_t row = 0; row < run.rows.size(); ++row)
         if (run.rows[row].key.kernel.method == Method::stp) run.images[row] = timed_batches(0.21);
     EXPECT_EQ(verdict(fastest), ClaimVerdict::holds);
-    EXPECT_EQ(verdict(slower), ClaimVerdict::does_not_hold) << "2.1 is beyond 1.83 by more than a tenth";
+    EXPECT_EQ(verdict(slower), ClaimVerdict::does_not_hold) << "2.1 is over 1.83 by more than a tenth";
     for (std::size_t row = 0; row < run.rows.size(); ++row)
         if (run.rows[row].key.kernel.method == Method::ms06) run.images[row] = timed_batches(0.15);
     EXPECT_EQ(verdict(fastest), ClaimVerdict::does_not_hold);
@@ -315,7 +315,7 @@ TEST(SearchRun, claims_of_older_methods_are_told_from_one_thread_and_tested_agai
     EXPECT_EQ(verdict("table5-ms06-is-59-percent-slower-gpu"), ClaimVerdict::holds) << "1.5 is within a tenth of 1.59";
 }
 
-TEST(SearchRun, times_are_scaled_to_the_papers_searches_and_stand_beside_its_device_of_that_kind)
+TEST(SearchRun, times_are_scaled_to_the_papers_searches_and_are_next_to_its_device_of_that_kind)
 {
     SearchRun run;
     run.rows.push_back(timed_row(Method::maria, 1, 0.1));

@@ -140,7 +140,7 @@ TEST(Table6, rows_pair_on_one_device_and_embree_with_openmp)
     EXPECT_EQ(fastest_pairs(run).size(), 6 + traced_embree_rows()) << "one layout of the CDT a device";
 }
 
-TEST(Table6, tets_for_rays_are_compared_by_the_fastest_walk_as_well_the_cdt_by_marias_alone)
+TEST(Table6, tets_for_rays_are_compared_by_the_fastest_walk_as_well_the_cdt_only_by_marias)
 {
     SceneRun run = open_run("openmp");
     const auto has_project = [&] {
@@ -166,7 +166,7 @@ TEST(Table6, rows_of_different_math_modes_are_not_compared)
     ASSERT_FALSE(row_pairs(run).empty());
     run.rows[bvh2].key.kernel.math = MathMode::fast;
     for (const RowPair& pair : row_pairs(run))
-        EXPECT_NE(pair.bvh, bvh2) << "an exact row of the CDT beside a fast one of the BVH";
+        EXPECT_NE(pair.bvh, bvh2) << "an exact row of the CDT and a fast one of the BVH";
     for (RowRun& row : run.rows)
         if (is_cdt(row) && row.key.kernel.layout != Layout::tet80) row.key.kernel.math = MathMode::fast;
     for (std::size_t i = 0; i < run.rows.size(); ++i)
@@ -174,10 +174,10 @@ TEST(Table6, rows_of_different_math_modes_are_not_compared)
     bool has_exact = false;
     for (const RowPair& pair : fastest_pairs(run))
         has_exact = has_exact || run.rows[pair.cdt].key.kernel.layout == Layout::tet80;
-    EXPECT_TRUE(has_exact) << "a fast row is no faster layout than an exact one's";
+    EXPECT_TRUE(has_exact) << "a fast row does not count as a faster layout than an exact one's";
 }
 
-TEST(Table6, the_fastest_layout_stands_for_the_cdt)
+TEST(Table6, the_fastest_layout_represents_the_cdt)
 {
     SceneRun run = open_run();
     set_all(run, 2, 3);
@@ -209,7 +209,7 @@ TEST(Table6, the_table_has_frames_of_the_papers_size_build_times_and_memory)
     EXPECT_EQ(text_of(table, cdt, "papers_frames_per_s"), "not its scene");
 }
 
-TEST(Table6, the_papers_frames_stand_beside_a_gpu_alone)
+TEST(Table6, the_papers_frames_are_next_to_only_a_gpu)
 {
     SceneRun run = open_run();
     run.build.scene = "armadillo";
@@ -232,7 +232,7 @@ TEST(Table6, the_papers_frames_stand_beside_a_gpu_alone)
     EXPECT_FALSE(papers(cdt));
 }
 
-TEST(Table6, a_pair_tells_after_how_many_rays_its_builds_are_paid)
+TEST(Table6, a_pair_reports_after_how_many_rays_its_builds_are_paid)
 {
     SceneRun run = open_run();
     set_all(run, 1e-6 * pixels, 2e-6 * pixels); // 7 times that a view on average: 7 and 14 us per ray
@@ -254,7 +254,7 @@ TEST(Table6, a_pair_tells_after_how_many_rays_its_builds_are_paid)
     EXPECT_EQ(text_of(table6_pairs({&run}), 0, "ahead"), "the BVH, always");
 }
 
-TEST(Table6, rates_that_cannot_be_told_apart_pay_nothing)
+TEST(Table6, rates_that_cannot_be_distinguished_pay_nothing)
 {
     SceneRun run = open_run();
     set_all(run, 1, 1);
@@ -291,7 +291,7 @@ TEST(Table6, claims_are_decided_by_the_interval_on_the_kind_of_device_that_they_
     EXPECT_EQ(verdict_of(run, "table6-bvh-is-faster-on-armadillo-gpu"), ClaimVerdict::not_testable);
 }
 
-TEST(Table6, claims_need_an_interval_and_quiet_rows_and_heed_bvh2_alone)
+TEST(Table6, claims_need_an_interval_and_quiet_rows_and_use_only_bvh2)
 {
     SceneRun run = open_run();
     set_all(run, 1, 2);
@@ -299,7 +299,7 @@ TEST(Table6, claims_need_an_interval_and_quiet_rows_and_heed_bvh2_alone)
     const std::string id = "table6-cdt-is-faster-on-bunny-cpu";
     set_times(run, find_row(run, Layout::cwbvh, Method::single), ramp(0.1));
     set_times(run, find_row(run, Layout::embree, Method::single, "embree"), ramp(0.1));
-    EXPECT_EQ(verdict_of(run, id), ClaimVerdict::holds) << "the paper has no such BVH";
+    EXPECT_EQ(verdict_of(run, id), ClaimVerdict::holds) << "the paper lacks such a BVH";
     set_times(run, find_row(run, Layout::tet80, Method::maria), ramp(9));
     EXPECT_EQ(verdict_of(run, id), ClaimVerdict::holds) << "tet96 is the faster layout";
     run.sampling = Sampling::chosen;
@@ -314,7 +314,7 @@ TEST(Table6, claims_need_an_interval_and_quiet_rows_and_heed_bvh2_alone)
     EXPECT_EQ(verdict_of(run, id), ClaimVerdict::not_testable) << "noisy";
 }
 
-TEST(Table6, a_row_without_a_rate_is_told_and_pairs_with_nothing)
+TEST(Table6, a_row_without_a_rate_is_reported_and_pairs_with_nothing)
 {
     SceneRun run = open_run();
     run.rows[find_row(run, Layout::bvh2, Method::single)].outcome = Skipped{Status::skipped, "no such thing"};

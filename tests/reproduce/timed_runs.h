@@ -68,7 +68,7 @@ inline const Claim& claim_of(const PaperTable& table, const std::string& id)
     throw std::runtime_error("no claim " + id);
 }
 
-/// From here on the run passes for one of the paper's scene, of the given likeness.
+/// From here on the run passes for one of the paper's scene, of the given similarity.
 inline void be_like(SceneRun& run, const std::string& scene, LikenessKind kind)
 {
     run.build.scene = scene;

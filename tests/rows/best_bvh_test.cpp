@@ -30,7 +30,7 @@ const std::vector<Contender> host = {contender("cdt half32", "host", 33),
                                      contender("cdt half32 on cuda", "a GPU", 17000),
                                      contender("cdt half32 on opencl", "opencl:0", 30)};
 
-/// A million rays in so many seconds; building took so long.
+/// A million rays in that many seconds, and the time of the build.
 RowRecord row_of(Structure structure, Layout layout, Method method, const std::string& backend, DeviceKind kind,
                  double seconds, double build_s = 1)
 {
@@ -68,7 +68,7 @@ TEST(BestBvh, is_the_fastest_of_all_entry_points_on_the_same_rays_and_device)
     EXPECT_EQ(best_bvh(host, 2), 5u) << "of BVHs too";
     EXPECT_EQ(best_bvh(host, 5), 5u) << "it is its own";
     EXPECT_EQ(best_bvh(host, 7), 6u);
-    EXPECT_FALSE(best_bvh(host, 8)) << "that device has no BVH";
+    EXPECT_FALSE(best_bvh(host, 8)) << "that device is without a BVH";
 }
 
 TEST(BestBvh, one_ray_at_a_time_is_of_ours_or_of_embrees)
@@ -163,7 +163,7 @@ TEST(PaidBuild, is_of_tets_whose_build_times_are_known)
     auto rows = list(tets_on("openmp", DeviceKind::cpu, 1, 11), bvh2_on("openmp", DeviceKind::cpu, 2, 1));
     const auto best = compare_with_best_bvh(rows);
     EXPECT_FALSE(paid_build(rows[1], best[1])) << "a BVH";
-    EXPECT_FALSE(paid_build(rows[0], std::nullopt)) << "no BVH beside it";
+    EXPECT_FALSE(paid_build(rows[0], std::nullopt)) << "no BVH next to it";
     rows[1].setup = {};
     EXPECT_FALSE(paid_build(rows[0], best[0])) << "of an older result";
 }

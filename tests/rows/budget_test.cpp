@@ -51,7 +51,7 @@ private:
     std::vector<Quad>* fewest_;
 };
 
-/// A row needs 2 views * (verified, warmed up, 5 samples, 1 pass alone) and 1 view again: 17 views. A view is 16 x 16
+/// A row needs 2 views * (verified, warmed up, 5 samples, 1 single pass) and 1 view again: 17 views. A view is 16 x 16
 /// rays. The first estimate takes at most four launches of 64 rays.
 constexpr double view_rays = 256, views_needed = 17, views_estimated = 1;
 
@@ -86,7 +86,7 @@ protected:
         return measure_rows(rows_, options_, read_benchmark_flags({}), limit);
     }
 
-    /// Two rows of a second per view, with time for so many samples of both views beyond the fewest; the budget is
+    /// Two rows of a second per view, with time for this many samples of both views over the minimum; the budget is
     /// kept.
     Measurement run_two_rows(double more_samples)
     {

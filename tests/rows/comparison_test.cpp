@@ -66,7 +66,7 @@ TEST(Comparison, of_several_runs_has_an_interval_over_them)
     EXPECT_NEAR(found->interval->high, 0.5, 1e-9);
     EXPECT_EQ(interval_text(*found), "[0.40, 0.50]");
     rows[0].run_samples = {18};
-    EXPECT_EQ(compare_rows(rows)[1]->runs, 1u) << "the reference has no such runs";
+    EXPECT_EQ(compare_rows(rows)[1]->runs, 1u) << "the reference lacks such runs";
 }
 
 TEST(Comparison, without_cuda_a_gpus_first_api_is_the_reference)
@@ -78,7 +78,7 @@ TEST(Comparison, without_cuda_a_gpus_first_api_is_the_reference)
     EXPECT_EQ(found[1]->reference, &rows[0]);
 }
 
-TEST(Comparison, an_emulation_without_openmp_beside_it_has_no_ratio)
+TEST(Comparison, an_emulation_without_openmp_has_no_ratio)
 {
     for (const auto& found :
          compare_rows(list(row_on("opencl", DeviceKind::emulated, 2), row_on("vulkan", DeviceKind::emulated, 1))))

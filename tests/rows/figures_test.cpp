@@ -159,7 +159,7 @@ TEST(Figures, the_ratio_is_over_the_faster_of_embrees_single_rays)
     EXPECT_DOUBLE_EQ(ratio_to_single(rows[0], rows).value(), 0.25);
     EXPECT_DOUBLE_EQ(ratio_to_single(rows[1], rows).value(), 0.5);
     rows[2].key.kernel.method = Method::packet16;
-    EXPECT_DOUBLE_EQ(ratio_to_single(rows[0], rows).value(), 0.5) << "packets are no single rays";
+    EXPECT_DOUBLE_EQ(ratio_to_single(rows[0], rows).value(), 0.5) << "packets are not single rays";
 }
 
 TEST(Figures, the_ratio_is_over_single_rays_of_the_same_kind_and_order)

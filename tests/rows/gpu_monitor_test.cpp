@@ -52,7 +52,7 @@ protected:
 
 } // namespace
 
-TEST(Nvml, tells_clocks_power_and_heat_of_a_gpu_by_its_uuid_or_its_address)
+TEST(Nvml, reports_clocks_power_and_heat_of_a_gpu_by_its_uuid_or_its_address)
 {
     for (const Device& device : {gpu(uuid, ""), gpu("", pci), gpu(uuid, pci)}) {
         const auto monitor = nvml_monitor(device, TETRACE_STUB_NVML_LIBRARY);
@@ -66,7 +66,7 @@ TEST(Nvml, tells_clocks_power_and_heat_of_a_gpu_by_its_uuid_or_its_address)
     }
 }
 
-TEST(Nvml, tells_what_throttles_but_not_what_the_user_asked_for)
+TEST(Nvml, reports_what_throttles_but_not_what_the_user_asked_for)
 {
     for (const auto& [word, text] :
          {std::pair("4", "power"), {"64", "hardware heat"}, {"36", "power, heat"}, {"19", ""}}) {
@@ -75,7 +75,7 @@ TEST(Nvml, tells_what_throttles_but_not_what_the_user_asked_for)
     }
 }
 
-TEST(Nvml, that_is_not_there_does_not_start_or_does_not_know_the_gpu_tells_nothing)
+TEST(Nvml, that_is_missing_does_not_start_or_does_not_know_the_gpu_reports_nothing)
 {
     EXPECT_EQ(nvml_monitor(gpu(uuid, pci), "libof-no-such-name.so.1"), nullptr);
     EXPECT_EQ(nvml_monitor(gpu("ffffffffffffffffffffffffffffffff", "0000:42:00.0"), TETRACE_STUB_NVML_LIBRARY),
@@ -85,7 +85,7 @@ TEST(Nvml, that_is_not_there_does_not_start_or_does_not_know_the_gpu_tells_nothi
     EXPECT_EQ(nvml_monitor(gpu(uuid, pci), TETRACE_STUB_NVML_LIBRARY), nullptr);
 }
 
-TEST_F(Amdgpu, tells_what_the_driver_s_files_hold)
+TEST_F(Amdgpu, reports_what_the_driver_s_files_have)
 {
     const GpuState state = told();
     EXPECT_EQ(state.clock_mhz, 2304);
@@ -106,7 +106,7 @@ TEST_F(Amdgpu, leaves_out_what_has_no_file)
     EXPECT_EQ(told().power_w, 17);
 }
 
-TEST_F(Amdgpu, tells_that_it_throttles_where_its_metrics_are_of_a_known_form)
+TEST_F(Amdgpu, reports_that_it_throttles_if_its_metrics_are_of_a_known_form)
 {
     write_metrics(3, 0);
     EXPECT_EQ(told().throttled, "");

@@ -20,7 +20,7 @@ using namespace tetrace::test;
 
 namespace {
 
-/// openmp's answers, told one by one: who was launched, and, where asked for, other hits once it is being timed.
+/// openmp's answers, and a list of the launches; if asked for, other hits once it is being timed.
 class WatchedSession : public WrappedSession {
 public:
     WatchedSession(std::unique_ptr<Session> inner, std::size_t number, std::vector<std::size_t>& launched,
@@ -177,7 +177,7 @@ TEST_F(Measure, a_sample_lasts_as_long_as_asked_for_by_passes_that_are_one_launc
     ASSERT_EQ(status_of(row), Status::ok) << reason_of(row);
     EXPECT_EQ(row.passes, 20u) << "of a millisecond; at first 13, by the two of the warm-up, for a device whose clocks "
                                   "rise by a quarter";
-    // Two views to warm up; for each sample a pass alone, all of them, and a launch for each view.
+    // Two views to warm up; for each sample a pass of each view, all of them, and a launch for each view.
     EXPECT_EQ(std::ranges::count(launches, 1u, &SeenLaunch::passes), 2 + 3 * (1 + 2));
     EXPECT_EQ(std::ranges::count(launches, 20u, &SeenLaunch::passes), 2);
     EXPECT_EQ(launches.size(), 2u + 3 * (1 + 1 + 2));
@@ -187,7 +187,7 @@ TEST_F(Measure, a_sample_lasts_as_long_as_asked_for_by_passes_that_are_one_launc
     EXPECT_DOUBLE_EQ(figures->mrays_per_s, 1e-6 * 2 * 64 / 1e-3);
     EXPECT_DOUBLE_EQ(figures->latency_mrays_per_s.value(), 1e-6 * 2 * 64 / 2e-3);
     EXPECT_DOUBLE_EQ(figures->latency_s.value(), 1e-3);
-    EXPECT_FALSE(figures->fixed_s.has_value()) << "all that there is would be fixed";
+    EXPECT_FALSE(figures->fixed_s.has_value()) << "everything would be fixed";
 }
 
 TEST_F(Measure, views_whose_hits_exceed_a_buffer_together_are_launched_in_several_batches)
@@ -235,12 +235,12 @@ TEST_F(Measure, given_rays_of_all_views_are_one_launch_with_the_hits_of_each)
         }
 }
 
-TEST_F(Measure, rows_on_gpus_are_interleaved_with_each_other_alone)
+TEST_F(Measure, rows_on_gpus_are_interleaved_only_with_each_other)
 {
     for (const std::size_t row : {0u, 1u}) {
         set_up_rows();
         rows_[row].device.kind = DeviceKind::gpu;
-        // By a clock that stands still, so that no pulse is due among the samples, however busy the machine is.
+        // By a clock that does not move, so that no calibration is due among the samples, however busy the machine is.
         Budget still(std::numeric_limits<double>::infinity(), [] { return 0.0; });
         static_cast<void>(measure_rows(rows_, options_, read_benchmark_flags({}), still));
         // The warm-up comes before them, of the GPU with a joined launch, and the GPU's pulse, which is its row's,
@@ -404,7 +404,7 @@ private:
 
 } // namespace
 
-TEST_F(Measure, each_run_opens_the_sessions_again_and_has_samples_of_its_own)
+TEST_F(Measure, each_run_opens_the_sessions_again_and_has_its_own_samples)
 {
     std::vector<SeenLaunch> launches;
     AgeingBackend ageing(launches);

@@ -76,7 +76,7 @@ protected:
 
 } // namespace
 
-TEST(Pulse, beside_an_interval_is_the_slower_one_of_its_two_neighbours)
+TEST(Pulse, at_an_interval_is_the_slower_one_of_its_two_neighbours)
 {
     const Pulse pulse{"host", {{0, 1.0}, {10, 2.0}, {20, 1.5}}};
     EXPECT_EQ(pulse.fastest_s(), 1.0);
@@ -112,7 +112,7 @@ TEST_F(Pulsed, rows_of_a_machine_that_keeps_its_speed_are_not_noisy)
 }
 
 // All samples agree, so that neither spread nor interval shows it: the machine was six times slower all the while.
-TEST_F(Pulsed, a_row_is_noisy_where_the_machine_was_slower_beside_half_of_its_samples)
+TEST_F(Pulsed, a_row_is_noisy_if_the_machine_was_slower_at_half_of_its_samples)
 {
     Pulses pulses(pointers_to(rows_), host(), clock());
     pulses.take();
@@ -166,7 +166,7 @@ TEST_F(Pulsed, rows_on_the_host_are_noisy_where_others_used_it)
     EXPECT_EQ(rows_[0].disturbance, "other processes used 1.00 of 2 CPUs");
 }
 
-TEST_F(Pulsed, a_gpu_has_a_pulse_of_its_own_which_load_of_the_host_does_not_touch)
+TEST_F(Pulsed, a_gpu_has_its_own_calibration_which_load_of_the_host_does_not_affect)
 {
     double gpu_s = 0.5;
     rows_[1].device.kind = DeviceKind::gpu;
@@ -199,7 +199,7 @@ TEST_F(Pulsed, a_pulse_ends_where_its_row_fails)
     EXPECT_EQ(pulses.found()[1].readings.size(), 1u);
 }
 
-TEST_F(Pulsed, measuring_takes_it_before_and_after_the_samples_and_tells_the_rows)
+TEST_F(Pulsed, measuring_takes_it_before_and_after_the_samples_and_passes_it_to_the_rows)
 {
     const double slower[] = {0.01, 0.06};
     const Pulses::Work host = [&] { return std::optional(slower[std::min(taken_++, 1)]); };

@@ -88,7 +88,7 @@ TEST(RowDevices, a_row_s_ceiling_is_that_of_the_level_that_holds_its_scene)
 TEST(Yardstick, copies_at_sizes_from_caches_to_memory_and_each_long_enough)
 {
     constexpr std::uint64_t mebibyte = std::uint64_t{1} << 20;
-    // 100 GB/s from a cache of 20 MiB, 10 GB/s beyond, and a microsecond for each copy.
+    // 100 GB/s from a cache of 20 MiB, 10 GB/s outside it, and a microsecond for each copy.
     const Yardstick measured = measure_copies(512 * mebibyte, [](std::uint64_t bytes, unsigned times) {
         return times * (1e-6 + 2.0 * static_cast<double>(bytes) / (2 * bytes > 20 * mebibyte ? 10e9 : 100e9));
     });

@@ -1,4 +1,4 @@
-// Each field of RowKey and of KernelId in turn: which rows are the same work, and which names tell them apart.
+// Each field of RowKey and of KernelId in turn: which rows are the same work, and which names distinguish them.
 #include "bench/rows/rows.h"
 
 #include <gtest/gtest.h>
@@ -13,8 +13,8 @@ struct Difference {
     const char* field;
     void (*change)(RowKey& key);
     bool same_work = false, same_rays = false, same_place = true;
-    bool is_in_title = false; ///< kernel_title() tells them apart
-    bool is_in_label = false; ///< device_label() tells them apart
+    bool is_in_title = false; ///< kernel_title() distinguishes them
+    bool is_in_label = false; ///< device_label() distinguishes them
 };
 std::ostream& operator<<(std::ostream& out, const Difference& difference)
 {

@@ -59,7 +59,7 @@ Device device_named(const char* name, DeviceKind kind, bool usable = true)
 }
 
 /// A backend whose kernels trace by the driver's own BVH: on device 1 by each schedule, on device 2 through a pipeline
-/// alone, on device 0 not at all.
+/// only there, on device 0 not at all.
 class Drivers : public OldHost {
 public:
     explicit Drivers(DeviceKind kind = DeviceKind::gpu)
@@ -168,7 +168,7 @@ TEST(Rows, of_a_drivers_bvh_are_those_of_devices_that_have_it_unless_they_are_as
     EXPECT_EQ(kernel_title({"s", "old", kernel}), "bvh rt pipeline");
 }
 
-TEST(Rows, of_a_drivers_bvh_are_traced_by_ray_queries_unless_the_schedule_says_or_the_driver_has_a_pipeline_alone)
+TEST(Rows, of_a_drivers_bvh_are_traced_by_ray_queries_unless_the_schedule_says_or_the_driver_has_only_a_pipeline)
 {
     Drivers drivers;
     const std::vector queries = {by_queries, by_queries + ":1", by_queries + ":2"};
@@ -205,7 +205,7 @@ TEST(Rows, persistent_threads_are_rows_where_they_are_asked_for)
     EXPECT_EQ(row_name(rows[4]), "cdt/maria/tet80/s/primary/math:exact/schedule:persistent/api:old");
 }
 
-TEST(Rows, the_default_is_maria_and_projects_records_beside_bvhs_and_embree)
+TEST(Rows, the_default_is_maria_and_projects_records_and_bvhs_and_embree)
 {
     EXPECT_EQ(names({"bench"}, {"bunny"}),
               (std::vector<std::string>{"cdt/maria/tet80/bunny/primary/math:exact/api:openmp",

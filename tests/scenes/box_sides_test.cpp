@@ -28,7 +28,7 @@ const Scene& cubes()
     return scene;
 }
 
-/// n - 1 tets round the edge from (0, 0, -1/2) to (0, 0, 1/2), which lies on the side y = 0: half of a fan.
+/// n - 1 tets around the edge from (0, 0, -1/2) to (0, 0, 1/2), which is on the side y = 0: half of a fan.
 TetMesh half_fan(std::uint32_t n, Random& random)
 {
     TetMesh mesh{{{0, 0, -0.5f}, {0, 0, 0.5f}}, {}};

@@ -1,6 +1,6 @@
 // What the builder does to a mesh before TetGen: clean it, place it in the domain, refuse one that meets itself.
-#include "scenes/builder/place.h"
-#include "scenes/builder/repair/clean.h"
+#include "scenes/builder/build.h"
+#include "scenes/builder/repair/repair.h"
 #include "scenes/builder/repair/self_intersection.h"
 #include "scenes/catalogue.h"
 #include "tests/support/builder_meshes.h"
@@ -20,7 +20,7 @@ TEST(CleanUp, counts_what_it_takes_away)
     EXPECT_EQ(clean_up(mesh), CleanUp{}) << "a clean mesh stays";
 }
 
-TEST(CleanUp, tells_thin_triangles_from_collinear_ones_exactly)
+TEST(CleanUp, distinguishes_thin_triangles_from_collinear_ones_exactly)
 {
     const float up = std::nextafter(2.0f, 3.0f);
     TriangleMesh mesh{{{0, 0, 0}, {1, 1, 1e-30f}, {2, 2, 2e-30f}, {2, up, 2e-30f}}, {{0, 1, 2}, {0, 1, 3}}};

@@ -140,7 +140,7 @@ TEST_F(BuilderProgram, refuses_bad_meshes_with_code_5)
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out.tet"));
 }
 
-TEST_F(BuilderProgram, tells_missing_files_with_code_3)
+TEST_F(BuilderProgram, reports_missing_files_with_code_3)
 {
     EXPECT_EQ(run_on(folder_ / "none.off").code, BUILDER_MISSING_FILE);
     const auto mesh = write("a.off", to_off(tetrahedron()));
@@ -191,7 +191,7 @@ TEST_F(BuilderProgram, numbers_triangles_as_the_file_does_where_some_are_dropped
     EXPECT_EQ(read_scene(folder_ / "out.tet").origins, (std::vector<std::uint32_t>{0, 2, 3, 4}));
 }
 
-TEST_F(BuilderProgram, tells_tetgens_refusal_with_code_11)
+TEST_F(BuilderProgram, reports_tetgens_refusal_with_code_11)
 {
     // Two triangles over one edge, so close to each other that TetGen takes them for one.
     const TriangleMesh hinge{{{0, 0, 0}, {1, 0, 0}, {0.5f, 1, 0}, {0.5f, 1, 1e-9f}}, {{0, 1, 2}, {0, 1, 3}}};
@@ -201,11 +201,11 @@ TEST_F(BuilderProgram, tells_tetgens_refusal_with_code_11)
     EXPECT_TRUE(contains(ended.errors, std::string(try_other_switches)));
 }
 
-TEST_F(BuilderProgram, tells_exhausted_memory_with_code_13)
+TEST_F(BuilderProgram, reports_exhausted_memory_with_code_13)
 {
     if (address_sanitized) GTEST_SKIP() << "AddressSanitizer reserves more address space than any limit";
     const auto mesh = write("a.off", to_off(tetrahedron()));
-    std::filesystem::resize_file(mesh, 400u << 20); // a hole: it takes no room on disk
+    std::filesystem::resize_file(mesh, 400u << 20); // a hole: it takes no space on disk
     const auto ended = run_on(mesh, "", "ulimit -v 200000; ");
     EXPECT_EQ(ended.code, BUILDER_OUT_OF_MEMORY) << ended.errors;
     EXPECT_TRUE(contains(ended.errors, "out of memory"));

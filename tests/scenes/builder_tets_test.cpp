@@ -4,7 +4,6 @@
 #include "scenes/builder/convert_tets.h"
 #include "scenes/builder/failure.h"
 #include "scenes/builder/run_tetgen.h"
-#include "scenes/builder/steiner_rounding.h"
 #include "tests/support/builder_meshes.h"
 #include "tests/support/sound_tets.h"
 
@@ -37,7 +36,7 @@ void expect_faces_inside_their_triangles(const Scene& scene)
             const double whole = length(cross(vb - va, vc - va));
             const double parts = length(cross(va - centre, vb - centre)) + length(cross(vb - centre, vc - centre)) +
                                  length(cross(vc - centre, va - centre));
-            ASSERT_NEAR(parts, whole, 1e-4 * whole) << "a face of triangle " << tet.faces[face] << " lies outside it";
+            ASSERT_NEAR(parts, whole, 1e-4 * whole) << "a face of triangle " << tet.faces[face] << " is outside it";
         }
     }
 }
@@ -203,7 +202,7 @@ TEST_F(OptimisingBuilder, betters_hostile_meshes)
 #if defined(__SANITIZE_ADDRESS__)
     GTEST_SKIP() << "takes five minutes here; the optimiser's other tests do not";
 #endif
-    TriangleMesh needles; // round one axis
+    TriangleMesh needles; // around one axis
     for (std::uint32_t i = 0; i < 12; ++i) {
         const auto angle = static_cast<float>(i) * 0.5f, radius = 1e-3f;
         needles.vertices.push_back({radius * std::cos(angle), radius * std::sin(angle), 0});
@@ -272,7 +271,7 @@ TEST_F(Builder, keeps_tetgens_tets_where_it_was_stopped_before_it_bettered_any_a
 
 TEST_F(Builder, leaves_tetgens_tets_with_effort_0)
 {
-    for (const std::string switches : {"pq5Y", "pY"}) { // with pY, points are for the optimiser alone
+    for (const std::string switches : {"pq5Y", "pY"}) { // with pY, points are only for the optimiser
         BuilderOptions asked = options(sphere(2), DomainKind::tight, switches);
         const Scene plain = build(asked);
         asked.tets = TetsKind::rays;
@@ -361,7 +360,7 @@ TEST_F(AbsurdOutput, names_a_domain_that_is_not_filled)
     expect_absurd("volume of the domain: the tets' volumes sum to");
 }
 
-TEST_F(AbsurdOutput, names_a_boundary_beside_the_domain_s_sides)
+TEST_F(AbsurdOutput, names_a_boundary_off_the_domain_s_sides)
 {
     for (float& line : prepared_.scene.domain.lines[0])
         line += 0.0625f; // as large, so that the volume does not tell

@@ -1,7 +1,6 @@
 #include "scenes/cache.h"
 
-#include "core/base/atomic_file.h"
-#include "scenes/file_lock.h"
+#include "core/base/files.h"
 #include "scenes/procedural.h"
 #include "scenes/scene_file.h"
 #include "tests/support/temporary_folder.h"
@@ -79,7 +78,7 @@ TEST_F(Cache, keeps_labels_from_leaving_its_folder)
     EXPECT_TRUE(path.filename().string().starts_with(".._x_y__-")) << path;
 }
 
-TEST_F(Cache, is_empty_where_there_is_no_folder)
+TEST_F(Cache, is_empty_without_a_folder)
 {
     EXPECT_TRUE(list_cache().empty());
     EXPECT_EQ(clear_cache(), 0u);

@@ -1,7 +1,6 @@
 #include "scenes/catalogue.h"
 
 #include "core/base/hash.h"
-#include "scenes/archive.h"
 #include "scenes/mesh_files.h"
 #include "scenes/procedural.h"
 #include "tests/support/temporary_folder.h"

@@ -104,7 +104,7 @@ TEST(ChildProcess, gains_no_privileges)
     EXPECT_TRUE(contains(shell("grep NoNewPrivs /proc/self/status").out, "1"));
 }
 
-TEST(ChildProcess, writes_no_file_beyond_its_limit)
+TEST(ChildProcess, writes_no_file_over_its_limit)
 {
     TemporaryFolder folder;
     const std::string script = "head -c 100000 /dev/zero > '" + (folder / "file").string() + "'; echo $?";

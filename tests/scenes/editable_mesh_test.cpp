@@ -21,7 +21,7 @@ using namespace tetrace::test;
 
 namespace {
 
-// n tets round the edge from (0, 0, -1/2) to (0, 0, 1/2), in a box of no more: each has an occlusive or boundary face.
+// n tets around the edge from (0, 0, -1/2) to (0, 0, 1/2), in a box of no more: each has an occlusive or boundary face.
 TetMesh fan(std::uint32_t n, Random& random)
 {
     TetMesh mesh{{{0, 0, -0.5f}, {0, 0, 0.5f}}, {}};
@@ -32,7 +32,7 @@ TetMesh fan(std::uint32_t n, Random& random)
     }
     for (std::uint32_t i = 0; i < n; ++i) {
         const std::uint32_t next = (i + 1) % n, last = (i + n - 1) % n;
-        // (1, 0, ring i, ring i + 1) is positive: faces 3 and 2 are shared with the tets before and behind.
+        // (1, 0, ring i, ring i + 1) is positive: faces 3 and 2 are shared with the tets before and after.
         mesh.tets.push_back({{1, 0, 2 + i, 2 + next},
                              {NO_HALF_FACE, NO_HALF_FACE, make_half_face(next, 3), make_half_face(last, 2)},
                              {FREE_FACE, FREE_FACE, FREE_FACE, FREE_FACE}});

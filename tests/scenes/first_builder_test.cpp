@@ -7,7 +7,7 @@
 using namespace tetrace;
 using namespace tetrace::test;
 
-// The builder of a first table (TETRACE_COMPILES) has no arrangement.cpp.
+// The builder of a first table (TETRACE_COMPILES) lacks arrangement.cpp.
 TEST(FirstBuilder, says_that_it_cuts_no_triangles_and_what_to_build)
 {
     const TrianglePair pairs[] = {{0, 1}, {0, 2}};

@@ -2,7 +2,6 @@
 #include "core/base/hash.h"
 #include "core/mesh/domain.h"
 #include "core/rays/camera_set.h"
-#include "core/rays/framing.h"
 #include "scenes/catalogue.h"
 #include "scenes/mesh_files.h"
 #include "scenes/procedural.h"
@@ -100,7 +99,7 @@ TriangleMesh read_off(const std::filesystem::path& path)
 
 } // namespace
 
-TEST(Frame, is_filled_by_each_scene_that_has_views_of_its_own)
+TEST(Frame, is_filled_by_each_scene_that_has_its_own_views)
 {
     std::size_t scenes = 0;
     for (const CatalogueEntry& row : catalogue()) {
@@ -117,7 +116,7 @@ TEST(Frame, is_filled_by_each_scene_that_has_views_of_its_own)
     EXPECT_EQ(scenes, 5u);
 }
 
-TEST(Frame, is_filled_by_a_mesh_without_views_of_its_own)
+TEST(Frame, is_filled_by_a_mesh_without_its_own_views)
 {
     for (const TriangleMesh& mesh : {make_banana(2'000), make_cubes(8).mesh}) {
         const Shares shares = shares_of(mesh, {});

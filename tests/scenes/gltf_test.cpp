@@ -89,7 +89,7 @@ protected:
 
 } // namespace
 
-TEST(NoGltf, is_told_with_what_brings_it)
+TEST(NoGltf, is_reported_with_its_package)
 {
     const std::string text = refusal("glTF");
     EXPECT_TRUE(contains(text, "invalid_input: reading a.glb: ")) << text;

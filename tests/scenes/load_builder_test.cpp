@@ -1,4 +1,4 @@
-// The builder: how it is found, what it is told, and how each of its ends is reported.
+// The builder: how it is found, its arguments, and how each of its ends is reported.
 #include "scenes/builder_exit.h"
 #include "tests/scenes/load_fixture.h"
 
@@ -23,7 +23,7 @@ TEST_F(Load, finds_the_builder_in_the_search_path_last)
     EXPECT_EQ(find_builder(), fs::exists(beside) ? beside : folder / "tetrace-builder");
 }
 
-TEST_F(Load, names_what_brings_a_missing_builder)
+TEST_F(Load, names_the_package_of_a_missing_builder)
 {
     const ScopedVariable none("TETRACE_BUILDER", folder / "none");
     EXPECT_TRUE(find_builder().empty()); // a wrong name is not passed over in silence
@@ -34,7 +34,7 @@ TEST_F(Load, names_what_brings_a_missing_builder)
     EXPECT_TRUE(contains(error, "TETRACE_BUILDER names " + (folder / "none").string()));
 }
 
-TEST_F(Load, tells_the_builder_all_that_was_asked)
+TEST_F(Load, passes_all_options_to_the_builder)
 {
     request.build = {.domain = DomainKind::wide, .divisions = 5, .switches = "pq3Y"};
     (void)error_of([&] { (void)load(); });
@@ -103,7 +103,7 @@ TEST_F(Load, maps_each_exit_code_to_its_own_error)
     }
 }
 
-TEST_F(Load, gives_the_mesh_alone_if_only_tetgen_fails_and_the_mesh_will_do)
+TEST_F(Load, gives_only_the_mesh_if_only_tetgen_fails_and_the_mesh_is_enough)
 {
     Scene mesh_alone = expected();
     mesh_alone.tets = {};
@@ -135,7 +135,7 @@ TEST_F(Load, gives_the_mesh_alone_if_only_tetgen_fails_and_the_mesh_will_do)
     for (const int code : {BUILDER_BAD_MESH, BUILDER_SELF_INTERSECTION, BUILDER_INTERNAL, BUILDER_USAGE})
         EXPECT_NE(error_with(alone + "exit " + std::to_string(code)), "") << "not TetGen's fault";
     EXPECT_TRUE(contains(error_with("exit " + std::to_string(BUILDER_TETGEN_REFUSED)), "TetGen refused the mesh"))
-        << "and the mesh alone fails, too";
+        << "and the mesh by itself fails, too";
 }
 
 TEST_F(Load, gives_a_remedy_where_the_builder_has_none)
@@ -174,7 +174,7 @@ TEST_F(Load, sets_a_scene_apart_whose_optimiser_was_stopped)
         use_builder("");
         const LoadedScene loaded = load();
         EXPECT_NE(loaded.file, cached());
-        EXPECT_FALSE(std::filesystem::exists(cached())) << "it is not the scene that the key stands for";
+        EXPECT_FALSE(std::filesystem::exists(cached())) << "it is not the scene of that key";
         EXPECT_TRUE(contains(loaded.messages.front(), "stopped early (" + std::string(name_of(end)) + ")"));
         EXPECT_EQ(load_scene({loaded.file.string(), {}}, {}).hash, loaded.hash) << "--scene takes it";
         const auto listed = list_cache();
@@ -203,7 +203,7 @@ TEST_F(Load, says_each_time_where_the_tets_are_still_tetgens)
     EXPECT_EQ(cached.messages.front(), "thing: the tets are TetGen's: the optimiser found nothing to better");
 }
 
-TEST_F(Load, gives_the_optimiser_half_of_the_builders_time_unless_told)
+TEST_F(Load, gives_the_optimiser_half_of_the_builders_time_by_default)
 {
     (void)load();
     EXPECT_TRUE(contains(read_text(folder / "runs"), "--optimise-for 300\n"));
@@ -214,7 +214,7 @@ TEST_F(Load, gives_the_optimiser_half_of_the_builders_time_unless_told)
     EXPECT_TRUE(contains(read_text(folder / "runs"), "--optimise-for 7\n"));
 }
 
-TEST_F(Load, shows_what_the_builder_tells_of_its_progress)
+TEST_F(Load, shows_the_builders_progress)
 {
     use_builder("echo 'stage: optimising' >&2; echo 'progress: 0.25 round 2: as far' >&2; sleep 0.3");
     std::vector<std::string> told;
@@ -266,7 +266,7 @@ TEST_F(Load, tries_all_other_switches_in_order_and_names_them_where_none_helps)
         << "other switches do not help";
 }
 
-TEST_F(Load, tells_a_crash)
+TEST_F(Load, reports_a_crash)
 {
     const std::string error = error_with("echo 'stage: tetgen' >&2; echo 'Assertion x failed' >&2; kill -SEGV $$");
     EXPECT_TRUE(contains(error, "invalid_input: building scene thing"));
@@ -276,7 +276,7 @@ TEST_F(Load, tells_a_crash)
     EXPECT_TRUE(cache_is_clean());
 }
 
-TEST_F(Load, tells_a_hang)
+TEST_F(Load, reports_a_hang)
 {
     request.build.time_limit_s = 0.3;
     const std::string error = error_with("echo 'stage: tetgen' >&2; sleep 60");
@@ -287,7 +287,7 @@ TEST_F(Load, tells_a_hang)
     EXPECT_TRUE(cache_is_clean());
 }
 
-TEST_F(Load, tells_an_interrupt)
+TEST_F(Load, reports_an_interrupt)
 {
     struct sigaction before {
     }, ours{};
@@ -318,7 +318,7 @@ TEST_F(Load, reads_a_large_mesh_in_pieces)
     };
     const std::uintmax_t before = max_bytes();
     EXPECT_TRUE(contains(error_of([&] { (void)load(); }), "another mesh"));
-    EXPECT_LT(max_bytes(), before + large / 2) << "the memory limit is the builder's alone";
+    EXPECT_LT(max_bytes(), before + large / 2) << "the memory limit is only the builder's";
 }
 
 TEST_F(Load, trusts_no_builder_that_reports_success)

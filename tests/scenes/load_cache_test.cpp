@@ -109,7 +109,7 @@ TEST_F(Load, builds_itself_where_the_first_of_two_processes_is_killed)
     ::waitpid(other, nullptr, 0);
     EXPECT_EQ(loaded.scene, expected());
     EXPECT_EQ(builder_runs(), 2u);
-    EXPECT_EQ(list_cache().size(), 1u) << "what the killed one left behind is gone";
+    EXPECT_EQ(list_cache().size(), 1u) << "the files of the killed one are gone";
     (void)clear_cache();
     EXPECT_TRUE(cache_is_clean());
 }

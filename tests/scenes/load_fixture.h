@@ -26,7 +26,7 @@ protected:
         use_builder("");
     }
 
-    /// What a builder would make of the mesh: the cubes, told to come from it.
+    /// What a builder would make of the mesh: the cubes, marked as made of it.
     [[nodiscard]] Scene expected() const
     {
         Scene scene = make_cubes(3);

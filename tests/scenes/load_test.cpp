@@ -39,7 +39,7 @@ TEST_F(Load, makes_a_lattice_of_the_size_that_its_name_has)
     EXPECT_EQ(builder_runs(), 0u);
 }
 
-TEST_F(Load, tells_which_options_cubes_do_not_heed)
+TEST_F(Load, reports_which_options_cubes_ignore)
 {
     request.name = "cubes";
     const auto expect_unused = [&](const BuildOptions& options, const std::string& unused) {
@@ -56,7 +56,7 @@ TEST_F(Load, tells_which_options_cubes_do_not_heed)
                   "--domain, --divisions, --switches are");
 }
 
-TEST_F(Load, tells_which_options_a_tet_file_does_not_heed)
+TEST_F(Load, reports_which_options_a_tet_file_ignores)
 {
     request.name = prepared.string();
     const auto expect_unused = [&](const BuildOptions& options, const std::string& unused) {
@@ -78,7 +78,7 @@ TEST_F(Load, a_tet_file_of_a_procedural_scene_has_its_views)
     scene.build.source = "atrium.off";
     request.name = (folder / "packed-rays.tet").string();
     write_scene(request.name, scene);
-    EXPECT_TRUE(load().views.empty()) << "of a mesh that has the name alone";
+    EXPECT_TRUE(load().views.empty()) << "of a mesh that has only the name";
     scene.build.source_hash = hash_of_mesh_file(*find_procedural("atrium"));
     write_scene(request.name, scene);
     EXPECT_EQ(load().views.size(), own_view_count);
@@ -87,7 +87,7 @@ TEST_F(Load, a_tet_file_of_a_procedural_scene_has_its_views)
     EXPECT_TRUE(load().views.empty()) << "in another size";
 }
 
-TEST_F(Load, tells_that_a_mesh_has_no_resolution)
+TEST_F(Load, reports_that_a_mesh_has_no_resolution)
 {
     request.build.resolution = 3;
     EXPECT_EQ(load().messages.back(), "scene " + mesh.string() +

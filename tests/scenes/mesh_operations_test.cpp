@@ -123,7 +123,7 @@ bool expect_cheapest(const EditableMesh& start, std::uint32_t tet, std::uint32_t
     return gain != 0;
 }
 
-// n tets round the edge of vertices 0 and 1, and a tet more on each of their outer faces.
+// n tets around the edge of vertices 0 and 1, and a tet more on each of their outer faces.
 TetMesh ball(std::uint32_t n, double half_edge, Random& random)
 {
     std::vector<Float3> points = {{0, 0, static_cast<float>(-half_edge)}, {0, 0, static_cast<float>(half_edge)}};
@@ -145,7 +145,8 @@ TetMesh ball(std::uint32_t n, double half_edge, Random& random)
     return mesh_from(points, tets);
 }
 
-// Least cost of a mesh with a vertex more: each set of tets that has those round its first edge is tried as its cavity.
+// Least cost of a mesh with a vertex more: each set of tets that has those around its first edge is tried as its
+// cavity.
 double cheapest_cavity(const EditableMesh& start, Double3 at, std::uint32_t round_edge)
 {
     double best = impossible;
@@ -307,7 +308,7 @@ TEST(Insertion, finds_the_cavity_that_brute_force_finds)
     }
     EXPECT_EQ(inserted, 200);
     EXPECT_GT(best, 190) << "it grows by the best tet, so it need not find the best set of tets";
-    EXPECT_GT(grown, 30) << "beyond the tets round the edge";
+    EXPECT_GT(grown, 30) << "more than the tets around the edge";
 }
 
 TEST(Insertion, is_undone_by_collapse)

@@ -133,7 +133,8 @@ TEST(MeshReader, reads_the_triangle_strips_of_ply_with_one_orientation)
     using Triangles = std::vector<std::array<std::uint32_t, 3>>;
     EXPECT_EQ(triangles("5 0 1 2 3 4"), (Triangles{{0, 1, 2}, {2, 1, 3}, {2, 3, 4}}));
     EXPECT_EQ(triangles("8 0 1 2 -1 2 3 4 5"), (Triangles{{0, 1, 2}, {2, 3, 4}, {4, 3, 5}})) << "two strips";
-    EXPECT_EQ(triangles("9 -1 0 1 2 2 2 3 4 -1"), (Triangles{{0, 1, 2}, {2, 3, 4}})) << "joined by what is no triangle";
+    EXPECT_EQ(triangles("9 -1 0 1 2 2 2 3 4 -1"), (Triangles{{0, 1, 2}, {2, 3, 4}}))
+        << "joined by a polygon that is not a triangle";
     expect_error("a.ply", strips("3 0 1 6"), {"tristrips 0", "index 6 is out of range"});
     expect_error("a.ply", strips("4 0 -1 1 2"), {});
     std::string nameless = strips("3 0 1 2");

@@ -26,7 +26,7 @@ void expect_valid_or_error(const std::string& name, const std::string& bytes)
 
 } // namespace
 
-TEST(MeshRefusal, tells_a_missing_file_from_a_bad_one)
+TEST(MeshRefusal, distinguishes_a_missing_file_from_a_bad_one)
 {
     const TemporaryFolder folder;
     const std::string error = error_of([&] { (void)read_mesh(folder / "none.off"); });

@@ -25,7 +25,7 @@ std::string bytes_of(Value value, bool little)
     return little == (std::endian::native == std::endian::little) ? bytes : std::string(bytes.rbegin(), bytes.rend());
 }
 
-/// A triangle pair as Stanford writes it: extra vertex properties, lists of int behind a byte.
+/// A triangle pair as Stanford writes it: extra vertex properties, lists of int after a byte.
 inline std::string stanford_ply(const std::string& format, const std::string& vertices = "4",
                                 const std::string& faces = "2", int last_index = 3, float last_x = 0.25f)
 {

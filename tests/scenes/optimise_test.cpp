@@ -1,8 +1,7 @@
 // The optimiser as a whole: cheaper, sound, the same surfaces, the same bits.
 #include "core/base/error.h"
-#include "core/mesh/sides.h"
+#include "core/mesh/entry_grid.h"
 #include "scenes/optimise/editable_mesh.h"
-#include "scenes/optimise/forecast.h"
 #include "scenes/optimise/graded_points.h"
 #include "scenes/optimise/optimise.h"
 #include "scenes/procedural.h"
@@ -98,7 +97,7 @@ TEST(Optimise, gives_the_same_bits_for_any_number_of_threads)
     }
 }
 
-TEST(Optimise, leaves_a_mesh_alone_that_it_cannot_better)
+TEST(Optimise, leaves_a_mesh_unchanged_that_it_cannot_improve)
 {
     TetMesh mesh = make_cubes(4).tets;
     for (int i = 0; i < 50; ++i) {
@@ -120,7 +119,7 @@ TEST(Optimise, ends_in_time_with_a_sound_mesh)
     expect_same_domain(result.mesh, scene);
 }
 
-TEST(Optimise, ends_when_it_is_told_to_with_a_sound_mesh_and_what_it_has_gained)
+TEST(Optimise, ends_at_its_limit_with_a_sound_mesh_and_its_gain)
 {
     const Scene scene = make_cubes(12);
     std::atomic<bool> stop{false};
@@ -135,7 +134,7 @@ TEST(Optimise, ends_when_it_is_told_to_with_a_sound_mesh_and_what_it_has_gained)
     EXPECT_GT(result.report.cost_after, optimised(scene.tets, 3).report.cost_after);
 }
 
-TEST(Optimise, tells_what_it_has_reached_and_a_share_that_comes_near_to_one)
+TEST(Optimise, reports_its_gain_and_a_share_that_approaches_one)
 {
     double last = 0;
     std::string detail;

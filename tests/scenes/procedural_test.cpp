@@ -2,7 +2,6 @@
 
 #include "core/base/hash.h"
 #include "core/mesh/entry_grid.h"
-#include "core/mesh/sides.h"
 #include "scenes/catalogue.h"
 #include "tests/support/temporary_folder.h"
 
@@ -141,7 +140,7 @@ TEST(Cubes, are_the_same_bits_everywhere)
     EXPECT_EQ(make_cubes(16), make_cubes(16));
 }
 
-TEST(Cubes, refuse_resolutions_beyond_their_range)
+TEST(Cubes, refuse_resolutions_outside_their_range)
 {
     for (const std::uint32_t n : {0u, 1u, 129u, 0xFFFFFFFFu})
         EXPECT_TRUE(
@@ -175,7 +174,7 @@ TEST(Lattice, has_as_many_solid_cubes_as_stop_a_line_after_half_its_length)
     }
 }
 
-TEST(Lattice, has_squares_of_several_cubes_where_there_are_more_than_128)
+TEST(Lattice, has_squares_of_several_cubes_if_there_are_more_than_128)
 {
 #if defined(__SANITIZE_ADDRESS__)
     GTEST_SKIP() << "takes two minutes here; smaller lattices do not";
@@ -194,7 +193,7 @@ TEST(Lattice, is_the_same_bits_everywhere)
     EXPECT_EQ(make_lattice(16), make_lattice(16));
 }
 
-TEST(Lattice, refuses_sizes_beyond_its_range)
+TEST(Lattice, refuses_sizes_outside_its_range)
 {
     for (const std::uint32_t n : {0u, min_lattice - 1, max_lattice + 1})
         EXPECT_TRUE(contains(error_of([&] { (void)make_lattice(n); }), "usage: making scene lattice: "));

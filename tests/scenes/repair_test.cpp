@@ -1,6 +1,5 @@
-// Triangles that cross are cut along their exact intersections: what is left meets in shared vertices and edges alone.
+// Triangles that cross are cut along their exact intersections: what is left meets only in shared vertices and edges.
 #include "scenes/builder/failure.h"
-#include "scenes/builder/repair/clean.h"
 #include "scenes/builder/repair/repair.h"
 #include "scenes/builder/repair/self_intersection.h"
 #include "tests/support/builder_meshes.h"
@@ -80,7 +79,7 @@ std::size_t open_edges(const TriangleMesh& mesh)
 
 } // namespace
 
-TEST(Repair, leaves_a_sound_mesh_as_it_is)
+TEST(Repair, leaves_a_sound_mesh_unchanged)
 {
     for (const TriangleMesh& mesh : {tetrahedron(), sphere(3), flat_cube(4)}) {
         const Scene before = scene_of(mesh);
@@ -129,7 +128,7 @@ TEST(Repair, keeps_overlapping_faces_once)
         area += normal_of(both.mesh, i).z / 2;
     EXPECT_DOUBLE_EQ(area, 1);
     const Scene boxes = repaired(joined(box({0, 0, 0}, {1, 1, 1}), box({1, 0.25f, 0.25f}, {2, 0.75f, 0.625f})), true);
-    EXPECT_GT(boxes.build.repair.dropped, 0u) << "where the side of one lies on that of the other";
+    EXPECT_GT(boxes.build.repair.dropped, 0u) << "their sides overlap";
 }
 
 TEST(Repair, gives_three_triangles_the_point_in_which_they_meet)

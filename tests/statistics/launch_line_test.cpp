@@ -49,7 +49,8 @@ TEST(LaunchLine, has_no_fixed_cost_that_noise_explains)
 
 TEST(LaunchLine, needs_samples_enough_and_two_sizes)
 {
-    EXPECT_FALSE(launch_line({1, around(1, 11)}, {4, {2}}, 4).fixed_s.has_value()) << "one sample has no interval";
+    EXPECT_FALSE(launch_line({1, around(1, 11)}, {4, {2}}, 4).fixed_s.has_value())
+        << "one sample does not give an interval";
     EXPECT_FALSE(launch_line({4, around(1, 11)}, {4, around(2, 11)}, 4).fixed_s.has_value());
     EXPECT_FALSE(launch_line({1, around(1, 11)}, {4, around(4.5, 11)}, 4).fixed_s.has_value())
         << "more than all the work";

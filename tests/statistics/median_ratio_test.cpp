@@ -1,4 +1,4 @@
-#include "bench/statistics/median_ratio.h"
+#include "bench/statistics/rank_interval.h"
 
 #include "core/base/error.h"
 
@@ -77,7 +77,7 @@ TEST(MedianRatio, the_interval_contains_the_true_ratio_as_often_as_it_says)
     }
 }
 
-TEST(MedianRatio, two_runs_of_one_program_are_hardly_ever_told_apart)
+TEST(MedianRatio, two_runs_of_one_program_are_hardly_ever_distinguished)
 {
     std::mt19937_64 random(5);
     int equal = 0;

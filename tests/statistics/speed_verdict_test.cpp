@@ -55,7 +55,7 @@ bool is_told_apart(const SpeedChange& change)
     return change.verdict == SpeedVerdict::faster || change.verdict == SpeedVerdict::slower;
 }
 
-/// How many of so many comparisons of a row, one of `rows`, find a change by the factor.
+/// How many of some comparisons of a row, one of `rows`, find a change by the factor.
 int found(int trials, std::size_t samples, const Noise& noise, double factor, std::size_t rows, Random& random)
 {
     int count = 0;
@@ -80,7 +80,7 @@ Samples around(double seconds, double relative)
 
 } // namespace
 
-// 1 % is promised; the standard deviation of 2,000 trials at 1 % is 0.22 %, so 1.7 % lies three of them above.
+// 1 % is promised; the standard deviation of 2,000 trials at 1 % is 0.22 %, so 1.7 % is three of them above.
 TEST(SpeedVerdict, raises_false_alarms_in_fewer_than_one_of_a_hundred_comparisons)
 {
     const std::pair<const char*, Noise> noises[] = {{"normal", normal(0.02)},
@@ -105,7 +105,7 @@ TEST(SpeedVerdict, finds_five_percent_through_two_percent_of_noise_in_twenty_sam
 }
 
 // 400 comparisons of 20 rows: 4 alarms are promised at most, 10 are three standard deviations above. Intervals of 99 %
-// for each row alone would give 73.
+// for each row by itself would give 73.
 TEST(SpeedVerdict, keeps_its_promise_for_all_rows_of_a_comparison_together)
 {
     Random random(11);
@@ -182,7 +182,7 @@ TEST(SpeedVerdict, takes_the_smallest_error_that_few_samples_allow)
     EXPECT_DOUBLE_EQ(error(samples_needed(500), 500), 0.01 / 500);
 }
 
-TEST(SpeedVerdict, is_a_regression_only_beyond_the_tolerance)
+TEST(SpeedVerdict, is_a_regression_only_over_the_tolerance)
 {
     const auto regressed = [](double seconds, double tolerance) {
         return compare_speed(around(1, 0.004), around(seconds, 0.004), 1, tolerance).is_regression(tolerance);

@@ -36,7 +36,7 @@ namespace tetrace::test {
     return domain_surface({DomainKind::tight, n, {line, line, line}});
 }
 
-/// An octahedron of radius 1 whose triangles are cut into four, so many times.
+/// An octahedron of radius 1 whose triangles are cut into four, that many times.
 [[nodiscard]] inline TriangleMesh sphere(int subdivisions)
 {
     TriangleMesh mesh{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},

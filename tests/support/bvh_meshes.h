@@ -27,7 +27,7 @@ inline TriangleMesh needles(std::uint32_t count)
     return mesh;
 }
 
-/// One triangle, again and again: nothing tells them apart.
+/// One triangle, again and again: nothing distinguishes them.
 inline TriangleMesh identical_triangles(std::uint32_t count)
 {
     TriangleMesh mesh;
@@ -109,9 +109,9 @@ inline Bvh chain(std::uint32_t depth, const Box& box)
     return bvh;
 }
 
-/// A tree and its mesh: `depth` levels, each with a leaf of one triangle that lies lower, in z, than all that follow.
+/// A tree and its mesh: `depth` levels, each with a leaf of one triangle that is lower, in z, than all that follow.
 /// All have the same box but for z: a ray from above enters all, so that as many leaves wait on its stack. Each
-/// triangle lies in another of 8 x 8 cells, the lowest in all of them: whether a ray finds its triangle depends on one
+/// triangle is in another of 8 x 8 cells, the lowest in all of them: whether a ray finds its triangle depends on one
 /// entry.
 struct DeepTree {
     TriangleMesh mesh;

@@ -37,7 +37,7 @@ struct MeshRow {
             {"deep", [] { return nested_groups(2, 30, 300); }}};
 }
 
-/// A mesh, its BVH, and rays that fill their stacks: to the last entry that the tree needs, beyond the entries that
+/// A mesh, its BVH, and rays that fill their stacks: to the last entry that the tree needs, more than the entries that
 /// GPUs keep in a group's memory.
 struct FullStacks {
     TriangleMesh mesh;

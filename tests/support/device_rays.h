@@ -1,7 +1,7 @@
 #pragma once
 
 #include "backends/openmp/backend.h"
-#include "core/base/ulps.h"
+#include "core/base/exact.h"
 #include "core/mesh/locate.h"
 #include "core/rays/camera_set.h"
 #include "scenes/procedural.h"
@@ -122,7 +122,7 @@ private:
     return traced(*session, job);
 }
 
-/// Rays that are decided differently, or whose t, u or v are further apart than so many units in the last place.
+/// Rays that are decided differently, or whose t, u or v differ by more than that many units in the last place.
 [[nodiscard]] inline std::size_t different_rays(const std::vector<Hit>& a, const std::vector<Hit>& b,
                                                 std::uint64_t allowed_ulps)
 {

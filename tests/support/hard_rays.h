@@ -26,9 +26,9 @@ enum class HardKind {
 };
 inline constexpr std::uint64_t hard_kinds = 9;
 
-/// Rays through one scene, a function of their number alone, the same on every machine: kind number % hard_kinds.
+/// Rays through one scene, a function of only their number, the same on every machine: kind number % hard_kinds.
 /// Those that start inside name a face of a tet that has the place, by which their line enters it; of from_inside the
-/// one behind.
+/// one opposite to the direction.
 class HardRays {
 public:
     /// scene: kept by reference.
@@ -147,13 +147,13 @@ private:
         if (largest == 0) return {1, 0, 0};
         int exponent = 0;
         (void)std::frexp(largest, &exponent);
-        Float3 cleaned = to_float(direction * std::ldexp(1.0, -exponent)); // exact scaling: the line stays what it is
+        Float3 cleaned = to_float(direction * std::ldexp(1.0, -exponent)); // exact scaling: the same line
         for (int axis = 0; axis < 3; ++axis)
             if (std::abs(cleaned[axis]) < 0x1p-20f) cleaned[axis] = 0;
         return cleaned;
     }
 
-    /// From a point of a sphere round the domain.
+    /// From a point of a sphere around the domain.
     GivenRay from_sphere(GivenRay ray, Draws& draws, Double3 target) const
     {
         ray.origin = snapped(on_sphere(draws));

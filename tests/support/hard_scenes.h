@@ -14,7 +14,7 @@
 
 namespace tetrace::test {
 
-/// Where the lines of a grid stand along each axis.
+/// The places of a grid's lines along each axis.
 using Lines = std::array<std::vector<float>, 3>;
 
 /// Moves each vertex of the tets, and of the surface with it, to place_of(its number).
@@ -44,7 +44,7 @@ inline Scene grid_of(const Lines& lines)
     return scene;
 }
 
-/// A grid whose inner cells are so small that all of them lie within rounding, and not in line: grids alone keep their
+/// A grid whose inner cells are so small that all of them are within rounding, and not in line: only grids keep their
 /// order where coordinates are rounded.
 inline Scene cluster_of(float cell)
 {

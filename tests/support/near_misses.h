@@ -13,10 +13,10 @@
 namespace tetrace::test {
 
 /// Rays from outside a mesh that pass an edge of it, or a corner, within a few bounds: where answers are hardest to
-/// judge. A function of their number alone.
+/// judge. A function of only their number.
 class NearMisses {
 public:
-    /// mesh: kept by reference; it lies in [-1, 1]^3.
+    /// mesh: kept by reference; it is in [-1, 1]^3.
     explicit NearMisses(const TriangleMesh& mesh) : mesh_(mesh) {}
 
     [[nodiscard]] ExactRay ray(std::uint32_t number) const

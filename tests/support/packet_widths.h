@@ -10,7 +10,7 @@
 
 namespace tetrace::test {
 
-/// Why packets with so many lanes are missing here; empty if they are not.
+/// Why packets with that many lanes are missing here; empty if they are not.
 [[nodiscard]] inline std::string why_no_packets_of(unsigned lanes)
 {
     try {

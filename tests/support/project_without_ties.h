@@ -1,6 +1,6 @@
 #pragma once
 
-// Method project on layout tet96, compiled as host C++, with a mistake: ties have no rule. A tie is then "not
+// Method project on layout tet96, compiled as host C++, with a mistake: ties are without a rule. A tie is then "not
 // positive", whichever way the edge is asked for. For tests that must find it.
 
 #include "core/device/backend.h"

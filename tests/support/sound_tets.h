@@ -2,8 +2,8 @@
 
 #include "core/base/exact.h"
 #include "core/mesh/entry_grid.h"
-#include "core/mesh/face_corners.h"
 #include "core/mesh/scene.h"
+#include "core/mesh/tet_mesh.h"
 
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ using FixedFace = std::tuple<std::array<std::array<float, 3>, 3>, std::uint32_t>
     return faces;
 }
 
-/// Expects that the boundary faces cover each side of the domain once: there is no gap, and their areas add up.
+/// Expects that the boundary faces cover each side of the domain once: without a gap, and their areas add up.
 inline void expect_covered_sides(const TetMesh& mesh, const Domain& domain)
 {
     const EntryGrid grid = make_entry_grid(domain, mesh);

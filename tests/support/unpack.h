@@ -1,10 +1,9 @@
 #pragma once
 
 #include "core/base/error.h"
-#include "core/mesh/face_corners.h"
-#include "core/pack/pack_compact.h"
+#include "core/mesh/tet_mesh.h"
+#include "core/pack/kernel_id.h"
 #include "core/pack/packed_scene.h"
-#include "core/pack/traits.h"
 
 #include <algorithm>
 #include <bit>
@@ -16,7 +15,9 @@ namespace tetrace::test {
 
 namespace unpacking {
 
-// Words of a tet that holds its corners: where vertex coordinates and faces stand.
+using FourWords = std::array<std::uint32_t, 4>;
+
+// Words of a tet that holds its corners: the places of vertex coordinates and faces.
 struct WordMap {
     std::uint32_t vertex_stride, first_face;
 };
@@ -60,7 +61,7 @@ inline std::uint32_t triangle_at(std::uint32_t exit)
     return (exit & 3u) == EXIT_END && exit != NO_HALF_FACE ? exit >> 2 : FREE_FACE;
 }
 
-// Whether the neighbour behind a face has that face as its own; the domain's boundary always has.
+// Whether the neighbour across a face has that face as its own; the domain's boundary always has.
 inline bool is_named_back(const TetMesh& mesh, std::uint32_t face)
 {
     const std::uint32_t half_face = mesh.tets[half_face_tet(face)].neighbours[half_face_index(face)];
@@ -101,7 +102,7 @@ inline void require_same(const std::vector<Quad>& quads, const std::vector<Quad>
                "it contradicts the others of its tet, or those of its neighbours");
 }
 
-// Numbers positions as they are first met.
+// Numbers positions in the order of their first use.
 class Places {
 public:
     explicit Places(std::vector<Float3>& vertices) : vertices_(vertices) {}
@@ -185,7 +186,7 @@ struct Decoded {
 struct Seen {
     std::uint32_t tet;
     std::array<std::uint32_t, 3> face; ///< its vertices in the order of face_corners, for this tet
-    std::uint32_t behind;              ///< what the tet names behind it
+    std::uint32_t behind;              ///< what the tet names across it
 };
 
 /// Goes from the boundary through all tets, as a walk does.
@@ -222,7 +223,7 @@ private:
         require(seen.tet < tets_.size());
         waiting_.push_back(seen);
     }
-    /// What is behind each of the tet's faces, where `known` is behind that of `known_rank`.
+    /// What is across each of the tet's faces; `known` is across that of `known_rank`.
     [[nodiscard]] FourWords behind_ranks(std::uint32_t tet, std::size_t known_rank, std::uint32_t known) const
     {
         const std::size_t first = std::size_t{tet} * (packed_.layout == Layout::tet20 ? TET20_WORDS : 4);

@@ -92,7 +92,7 @@ std::string names_of(const std::vector<RayKind>& kinds)
     return names;
 }
 
-/// "cdt/maria/tet80", with "/persistent", "/packets" or the kind of rays that it is given behind it.
+/// "cdt/maria/tet80", followed by "/persistent", "/packets" or the kind of rays that it is given.
 std::string expected_name(const KernelId& kernel, RayKind kind)
 {
     std::string name = name_of(kernel);

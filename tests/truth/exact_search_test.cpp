@@ -13,7 +13,7 @@ namespace {
 
 struct BruteForce {
     std::uint32_t first = NO_HIT; ///< what the exact ray meets first
-    bool is_near_an_edge = false; ///< some edge lies within the radius of the ray's line
+    bool is_near_an_edge = false; ///< some edge is within the radius of the ray's line
 };
 
 double distance(const ExactRay& ray, Double3 a, Double3 b)
@@ -57,8 +57,7 @@ TEST(ExactSearch, finds_what_brute_force_finds_and_says_where_that_is_not_clear)
             const BruteForce expected = brute_force(scene.mesh, ray, {}, 2 * radius); // margins are generous
             const FirstHit first = search.first(ray, {}, radius);
             ASSERT_TRUE(!first.is_clear || first.face == expected.first) << name << ", ray " << i;
-            unclear +=
-                !first.is_clear && !expected.is_near_an_edge; // beyond a sharp corner, near both its edges' lines
+            unclear += !first.is_clear && !expected.is_near_an_edge; // past a sharp corner, near both its edges' lines
             clear += first.is_clear;
             near += !first.is_clear;
         }
@@ -106,9 +105,9 @@ TEST(ExactSearch, heeds_where_a_ray_starts_and_ends)
     EXPECT_FALSE(first(1, {.end = 1 + 0x1p-21f}).is_clear) << "it ends there";
 }
 
-TEST(ExactSearch, is_not_clear_where_another_triangle_is_first_beside_the_ray)
+TEST(ExactSearch, is_not_clear_if_another_triangle_is_first_next_to_the_ray)
 {
-    // Behind the slope where the ray meets that, and before it at half of the radius to the left.
+    // On the far side of the slope along the ray, and on the near side at half of the radius to the left.
     constexpr float radius = 0x1p-18f;
     const TriangleMesh mesh{{{-1, -1, -1},
                              {1, -1, 1},

@@ -1,4 +1,4 @@
-#include "bench/truth/given_oracle.h"
+#include "bench/truth/oracle.h"
 
 #include "backends/embree/bvh_builder.h"
 #include "core/base/exact.h"
@@ -220,7 +220,7 @@ Verdicts judged(float gap, std::uint32_t face, float t, Origins origins, float e
 } // namespace
 
 // The offset from z = 0 is 2^-16, the bound here 2^-19.6.
-TEST(GivenOracle, what_the_offset_alone_explains_is_neither_right_nor_wrong)
+TEST(GivenOracle, what_only_the_offset_explains_is_neither_right_nor_wrong)
 {
     constexpr float gap = 0x1p-18F;
     EXPECT_EQ(judged(gap, near_sheet, gap, Origins::own).agreed, 1u);
@@ -239,7 +239,7 @@ TEST(GivenOracle, any_hit_will_do_where_that_is_asked)
     EXPECT_EQ(judged(0.25F, near_sheet, 0.25F, Origins::own, 1, true).agreed, 1u);
     EXPECT_EQ(judged(0.25F, far_sheet, 0.5F, Origins::own, 1, true).agreed, 1u);
     EXPECT_EQ(judged(0.25F, far_sheet, 0.5F, Origins::own, 1, false).wrong, 1u);
-    EXPECT_EQ(judged(0.25F, far_sheet, 0.5F, Origins::own, 0.375F, true).wrong, 1u) << "beyond its end";
+    EXPECT_EQ(judged(0.25F, far_sheet, 0.5F, Origins::own, 0.375F, true).wrong, 1u) << "past its end";
     EXPECT_EQ(judged(0.25F, NO_HIT, 0, Origins::own, 0.125F, true).agreed, 1u);
     EXPECT_EQ(judged(0.25F, NO_HIT, 0, Origins::own, 1, true).wrong, 1u);
 }
@@ -255,7 +255,7 @@ TEST(GivenOracle, an_answer_that_names_no_triangle_will_do_where_any_hit_does)
         << "the end is offset by 2^-16 too";
 }
 
-TEST(GivenOracle, a_hit_beside_a_triangle_s_edge_is_a_tie_within_the_bound)
+TEST(GivenOracle, a_hit_outside_a_triangle_s_edge_is_a_tie_within_the_bound)
 {
     const TriangleMesh mesh = sheets(0.25F);
     const auto beside = [&](float x) {

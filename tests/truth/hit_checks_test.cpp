@@ -1,5 +1,5 @@
 #include "bench/truth/hit_checks.h"
-#include "core/base/ulps.h"
+#include "core/base/exact.h"
 
 #include "core/base/error.h"
 
@@ -64,7 +64,7 @@ TEST(CompareHits, either_triangle_will_do_where_any_hit_answers)
     const std::vector<Hit> theirs(3, {8, NO_TET, 0.75f, 0, 0, 0});
     EXPECT_EQ(compare_hits(ours, theirs, {.ulps = 3}).count, 3u);
     const Differences found = compare_hits(ours, theirs, {.ulps = 3, .any_triangle = true});
-    EXPECT_EQ(found.count, 2u) << "a miss and a lost ray are no hits";
+    EXPECT_EQ(found.count, 2u) << "a miss and a lost ray are not hits";
     EXPECT_EQ(found.inexact, 3u);
     EXPECT_EQ(found.max_ulps, 0u) << "parameters on different triangles are not compared";
     EXPECT_EQ(compare_hits(theirs, ours, {.ulps = 3, .any_triangle = true}).count, 2u);
@@ -85,7 +85,7 @@ TEST(UlpsBetween, counts_floats_between_and_knows_signs)
     EXPECT_GT(ulps_between(1.0f, std::numeric_limits<float>::quiet_NaN()), 1000u);
 }
 
-TEST(CountRays, tells_what_became_of_each)
+TEST(CountRays, reports_the_outcome_of_each)
 {
     const std::vector<Hit> hits = {
         right, right, {NO_HIT, 0, 0, 0, 0, 5}, {LOST, 0, 0, 0, 0, 100}, {POISON, 0, 0, 0, 0, 0}};

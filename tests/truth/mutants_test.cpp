@@ -23,7 +23,7 @@ std::string why_not(const std::string& name)
             if (device.usable) return {};
         return backend->devices().front().reason;
     }
-    return "there is no backend " + name;
+    return "unknown backend " + name;
 }
 
 struct Ended {

@@ -21,8 +21,8 @@ using namespace tetrace::test;
 namespace {
 
 enum class Falsified { next_layer, layer_behind, neighbour, no_hit, edge_on, t_off, u_outside, v_outside };
-constexpr std::array<const char*, 8> kinds{"the next layer",      "the layer behind that", "a neighbour", "NO_HIT",
-                                           "an edge-on triangle", "t off by ten bounds",   "u outside",   "v outside"};
+constexpr std::array<const char*, 8> kinds{"the next layer",      "the layer after that", "a neighbour", "NO_HIT",
+                                           "an edge-on triangle", "t off by ten bounds",  "u outside",   "v outside"};
 
 struct Count {
     std::uint64_t falsified = 0, caught = 0, excused = 0, exact = 0, overlooked = 0;

@@ -160,7 +160,7 @@ TEST(Walk, layouts_and_threads_do_not_change_a_bit)
 namespace {
 
 #if defined(__SSE2__)
-// A scene so small that every product is denormal: it tells whether the walk's thread flushes them, as Embree and TBB
+// A scene so small that every product is denormal: it shows whether the walk's thread flushes them, as Embree and TBB
 // leave their threads.
 TEST(Walk, a_thread_that_flushes_denormals_is_set_back)
 {

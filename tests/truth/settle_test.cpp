@@ -31,7 +31,7 @@ struct Settled {
     Settler settler{mesh, search};
 };
 
-/// A square in z = 0 as two triangles that share the diagonal from (0,0) to (1,1); behind it, at z = -1, a larger one.
+/// A square in z = 0 as two triangles that share the diagonal from (0,0) to (1,1); after it, at z = -1, a larger one.
 const Settled squares({{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {-4, -4, -1}, {8, -4, -1}, {-4, 8, -1}},
                        {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}}});
 constexpr std::uint32_t lower = 0, upper = 1, behind = 2;
@@ -77,7 +77,7 @@ TEST(Settle, either_side_of_a_shared_edge_is_a_tie_within_the_bound)
     EXPECT_GE(tie.witness.size(), 2u);
 }
 
-TEST(Settle, beyond_the_bound_the_wrong_side_of_a_shared_edge_is_wrong)
+TEST(Settle, outside_the_bound_the_wrong_side_of_a_shared_edge_is_wrong)
 {
     EXPECT_EQ(squares.at(0.5f + 0x1p-18f, 0.5f, upper), Kind::wrong);
     EXPECT_EQ(squares.at(0.75f, 0.25f, upper), Kind::wrong);
@@ -113,7 +113,7 @@ TEST(Settle, a_fold_is_a_silhouette)
     EXPECT_EQ(fold.at(-0.25f, 0.25f, 1), Kind::wrong) << "it hides the lower one";
 }
 
-TEST(Settle, a_miss_inside_a_silhouette_is_wrong_where_a_solid_triangle_is_behind)
+TEST(Settle, a_miss_inside_a_silhouette_is_wrong_if_a_solid_triangle_follows)
 {
     EXPECT_EQ(squares.at(1 - e, 0.5f, NO_HIT), Kind::wrong);
     EXPECT_EQ(squares.at(1 + e, 0.5f, NO_HIT), Kind::wrong);
@@ -133,7 +133,7 @@ TEST(Settle, a_triangle_two_layers_back_is_wrong_where_the_layer_between_is_soli
     EXPECT_EQ(mirror.at(0, 0, 2), Kind::wrong);
 }
 
-TEST(Settle, a_triangle_behind_two_silhouettes_is_a_tie_also_where_no_straight_ray_passes_both)
+TEST(Settle, a_triangle_after_two_silhouettes_is_a_tie_even_if_no_straight_ray_passes_both)
 {
     // The first layer ends to the right of the ray, the second begins there, and they overlap as seen from above: a
     // curve passes the first on the right, and the second on the left.
@@ -146,7 +146,7 @@ TEST(Settle, a_triangle_behind_two_silhouettes_is_a_tie_also_where_no_straight_r
     EXPECT_GT(tie.witness.size(), 3u) << "it bends between the layers";
     EXPECT_EQ(mirror.at(0, 0, 1), Kind::tie);
 
-    // Where the second layer's edge is out of reach, so is what lies behind.
+    // If the second layer's edge is out of reach, so is everything after it.
     for (const std::uint32_t v : {6u, 7u})
         mesh.vertices[v].x = -0x1p-18f;
     EXPECT_EQ(Settled(mesh).at(0, 0, 1), Kind::wrong);
@@ -167,7 +167,7 @@ TEST(Settle, layers_that_touch_leave_no_way_between_them)
 
 TEST(Settle, a_triangle_that_is_seen_edge_on_does_not_hide_what_lies_before_it)
 {
-    // Edge-on in the plane x = 0, one unit behind a solid triangle whose interior the ray meets.
+    // Edge-on in the plane x = 0, one unit after a solid triangle whose interior the ray meets.
     TriangleMesh mesh = layers({{0, 4}});
     mesh.vertices.insert(mesh.vertices.end(), {{0, -1, -2}, {0, 1, -2}, {0, 0, -1}});
     mesh.triangles.push_back({3, 4, 5});
@@ -181,7 +181,7 @@ TEST(Settle, a_triangle_that_is_seen_edge_on_does_not_hide_what_lies_before_it)
 
 TEST(Settle, a_triangle_that_is_seen_edge_on_may_be_met_or_passed)
 {
-    // Edge-on in the plane x = 0, with a solid triangle behind it.
+    // Edge-on in the plane x = 0, with a solid triangle after it.
     TriangleMesh mesh = layers({{-2, 4}});
     mesh.vertices.insert(mesh.vertices.end(), {{0, -1, -1}, {0, 1, -1}, {0, 0, 0}});
     mesh.triangles.push_back({3, 4, 5});
@@ -200,7 +200,7 @@ TEST(Settle, a_curve_does_not_go_back)
     TriangleMesh mesh = layers({{0, 4}, {-1, 4}});
     const Settled two(mesh);
     EXPECT_EQ(two.at(0, 0, 1), Kind::wrong);
-    EXPECT_EQ(two.along({{0, 0, -0.5f}, {0, 0, -1}}, 0).kind, Kind::wrong) << "behind the origin";
+    EXPECT_EQ(two.along({{0, 0, -0.5f}, {0, 0, -1}}, 0).kind, Kind::wrong) << "before the origin";
     EXPECT_EQ(two.along({{0, 0, -0.5f}, {0, 0, -1}}, 1).kind, Kind::exact);
 }
 
@@ -211,15 +211,15 @@ TEST(Settle, a_part_that_starts_on_a_triangle_begins_within_the_bound_and_leaves
     const RayPart part{.start = 0};
     EXPECT_EQ(two.along(ray, 0, part).kind, Kind::wrong);
     EXPECT_EQ(two.along(ray, 1, part).kind, Kind::exact);
-    EXPECT_EQ(two.along(ray, 2, part).kind, Kind::tie) << "a curve may begin beyond the second";
+    EXPECT_EQ(two.along(ray, 2, part).kind, Kind::tie) << "a curve may begin past the second";
     EXPECT_EQ(two.along(ray, NO_HIT, part).kind, Kind::wrong);
     EXPECT_EQ(two.along(ray, 2).kind, Kind::wrong) << "a ray that starts on none begins at its origin";
 }
 
 TEST(Settle, a_part_that_starts_at_a_corner_may_meet_a_thin_triangle_that_leads_back_from_it)
 {
-    // Walls round the corner 2 of cells as thin as 1 : 10,000. A curve that meets triangle 5 first must begin
-    // behind it, and only less than half the bound from the corner can it do so.
+    // Walls around the corner 2 of cells as thin as 1 : 10,000. A curve that meets triangle 5 first must begin
+    // past it, and only less than half the bound from the corner can it do so.
     constexpr float h = 4.99999987e-05f;
     const Settled cells({{{-0.5f, -0.5f, -h},
                           {0, -0.5f, -h},
@@ -237,7 +237,7 @@ TEST(Settle, a_part_that_starts_at_a_corner_may_meet_a_thin_triangle_that_leads_
     EXPECT_EQ(cells.along({{-0.25f, -0.5f, -h}, ray.direction}, 5, part).kind, Kind::wrong);
 }
 
-TEST(Settle, a_part_that_starts_on_an_edge_may_begin_behind_both_of_its_triangles)
+TEST(Settle, a_part_that_starts_on_an_edge_may_begin_past_both_of_its_triangles)
 {
     // The edge of a column's two walls, and its floor. A curve that meets the floor first must begin inside the column,
     // and of the two cells that the edge makes of the tube's cross-section only a part of each is inside.
@@ -271,7 +271,7 @@ TEST(Settle, a_part_ends_within_the_bound_of_its_end)
     EXPECT_EQ(ends(0.5f, 0), Kind::wrong);
 }
 
-TEST(Settle, a_triangle_that_is_seen_edge_on_beyond_the_end_is_not_met)
+TEST(Settle, a_triangle_that_is_seen_edge_on_past_the_end_is_not_met)
 {
     const Settled wall({{{0, -1, -1}, {0, 1, -1}, {0, 0, 0}}, {{0, 1, 2}}});
     for (const bool any_hit : {false, true}) {
@@ -376,7 +376,7 @@ TEST(HitPoint, of_a_triangle_seen_edge_on_lies_in_it)
     EXPECT_TRUE(std::isinf(point_of(wall, ray, 0).t));
     EXPECT_TRUE(is_right(1.5f, 1.0f / 3, 1.0f / 3));
     EXPECT_TRUE(is_right(1, 0, 1));
-    EXPECT_FALSE(is_right(2.25f, 1.0f / 3, 1.0f / 3)) << "behind all of it";
+    EXPECT_FALSE(is_right(2.25f, 1.0f / 3, 1.0f / 3)) << "past all of it";
     EXPECT_FALSE(is_right(0.5f, 1.0f / 3, 1.0f / 3)) << "before all of it";
     EXPECT_FALSE(is_right(1.5f, -0.5f, 1.0f / 3));
     EXPECT_FALSE(is_right(1.5f, 0.75f, 0.75f));

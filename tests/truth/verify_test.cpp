@@ -186,7 +186,7 @@ TEST_F(Verify, of_math_mode_fast_flaws_are_counted_and_fail_nothing)
     EXPECT_EQ(reason_of(row), "2 lost; math mode fast is held to no proof");
     row.key.kernel = {
         .structure = Structure::bvh, .method = Method::single, .layout = Layout::embree, .math = MathMode::fast};
-    EXPECT_EQ(reason_of(row), "2 lost") << "Embree has no modes";
+    EXPECT_EQ(reason_of(row), "2 lost") << "Embree is without modes";
 }
 
 TEST_F(Verify, a_wrong_parameter_makes_a_row_flawed)
@@ -276,7 +276,7 @@ TEST_F(Verify, a_device_that_contracts_may_not_claim_to_be_exact)
     EXPECT_EQ(conformity_text(row), "not exact: contracts");
 }
 
-TEST_F(Verify, images_are_shown_with_openmps_hits_beside_them)
+TEST_F(Verify, images_are_shown_with_openmps_hits_next_to_them)
 {
     RowRun row = open_row({"cubes", "openmp", {}}, scene_, options_);
     row.key.backend = "other";
@@ -334,7 +334,7 @@ TEST_F(Verify, a_given_ray_that_differs_is_named_by_the_pixel_it_was_made_for)
     EXPECT_EQ(traced(row)->first_different->y, pixel / 40);
 }
 
-TEST_F(Verify, paths_of_tets_are_told_of_primary_rays_through_tets_alone)
+TEST_F(Verify, paths_of_tets_are_reported_only_of_primary_rays_through_tets)
 {
     const auto one_step_more = [](std::span<Hit> hits) { hits[17].steps += 1; };
     for (const Layout layout : {Layout::tet80, Layout::cwbvh}) {
@@ -366,7 +366,7 @@ TEST_F(Verify, a_given_ray_with_a_wrong_face_is_flawed)
     }
 }
 
-TEST_F(Verify, visits_are_counted_on_openmps_bvhs_alone)
+TEST_F(Verify, visits_are_counted_only_on_openmps_bvhs)
 {
     const RowRun counted = verified_given(
         RayKind::diffuse, Layout::cwbvh, [](std::span<Hit>) {}, "openmp");

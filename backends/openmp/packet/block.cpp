@@ -21,12 +21,6 @@ using tetrace::openmp::PacketJob;
 
 #include "backends/openmp/packet/walk.h"
 
-#include "backends/openmp/packet/start.h"
-
-#include "backends/openmp/packet/hits.h"
-
-#include "backends/openmp/packet/double3.h"
-
 #include "backends/openmp/packet/beams.h"
 
 #include "backends/openmp/packet/given.h"

@@ -1,12 +1,13 @@
 #include "bench/report/campaign/campaign.h"
 
-#include "bench/results/same_work.h"
+#include "bench/results/result_comparison.h"
 #include "core/base/error.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <fmt/format.h>
 #include <unordered_map>
 
 namespace tetrace {

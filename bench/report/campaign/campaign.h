@@ -1,7 +1,8 @@
 #pragma once
 
+#include "bench/report/html/html.h"
 #include "bench/report/report_rows.h"
-#include "bench/results/rate_pulse.h"
+#include "bench/results/result_comparison.h"
 
 #include <filesystem>
 #include <map>
@@ -36,7 +37,8 @@ struct CampaignRate {
     RatePulse pulse = {};
 };
 
-/// All rates of the same work: the same row with the same rays and the same answers (bench/results/same_work.h).
+/// All rates of the same work: the same row with the same rays and the same answers
+/// (bench/results/result_comparison.h).
 struct CampaignWork {
     std::string label;               ///< "cdt maria tet80  vulkan"
     std::vector<CampaignRate> rates; ///< in the order of their results
@@ -71,5 +73,20 @@ struct Campaign {
 /// Reads the files. One that is not a result, or not as results/README.md describes, is left out.
 /// Throws Error{missing} for a missing file, Error{invalid_input} where none is a result.
 [[nodiscard]] Campaign read_campaign(const std::vector<std::filesystem::path>& files);
+
+// The sections of a campaign's page, in order.
+
+[[nodiscard]] Section index_section(const Campaign& campaign);    ///< machines and results; what was left out
+[[nodiscard]] Section machines_section(const Campaign& campaign); ///< machines compared, same work only
+[[nodiscard]] Section trend_section(const Campaign& campaign);    ///< each machine's rates over its dates
+
+/// The machines that have a rate in a group, ascending.
+[[nodiscard]] std::vector<std::size_t> machines_in(const CampaignGroup& group);
+
+/// Where a machine's trends are on the page.
+[[nodiscard]] std::string trend_anchor(const Campaign& campaign, std::size_t machine);
+
+/// Whether a machine has the same work in results of several dates.
+[[nodiscard]] bool has_trend(const Campaign& campaign, std::size_t machine);
 
 } // namespace tetrace

@@ -1,4 +1,4 @@
-#include "bench/report/campaign/campaign_sections.h"
+#include "bench/report/campaign/campaign.h"
 
 #include <algorithm>
 #include <fmt/format.h>

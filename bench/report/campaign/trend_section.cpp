@@ -1,4 +1,4 @@
-#include "bench/report/campaign/campaign_sections.h"
+#include "bench/report/campaign/campaign.h"
 #include "bench/report/charts/axis.h"
 #include "bench/report/charts/line_chart.h"
 #include "bench/statistics/speed_verdict.h"

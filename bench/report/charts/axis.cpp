@@ -1,17 +1,68 @@
 #include "bench/report/charts/axis.h"
 
+#include "bench/report/html/svg.h"
 #include "bench/terminal/text.h"
 #include "core/base/error.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <fmt/format.h>
 #include <limits>
 #include <numeric>
 #include <utility>
 
 namespace tetrace {
+
+namespace {
+constexpr double leader = 22; ///< length of the slanted part of the line, and space around it
+} // namespace
+
+double side_labels_left(double max_label)
+{
+    return std::max(chart_width / 2, chart_width - max_label - leader - 1);
+}
+
+Html side_label(double point_x, double point_y, double plot_right, double label_y, const std::string& label,
+                std::optional<std::size_t> series)
+{
+    const double end = plot_right + leader, start = end + (series ? side_key_width : 0);
+    return svg_path(fmt::format("M{:.1f} {:.1f}H{:.1f}L{:.1f} {:.1f}", point_x, point_y, plot_right, end - 4, label_y),
+                    "leader") +
+           (series ? svg_shape(end + 3, label_y, *series, "solid") : Html()) +
+           svg_text(start, label_y + 4.5, "label", shortened(label, label_size, chart_width - start));
+}
+
+Html horizontal_ticks(const Axis& axis, double left, double right, double top, double bottom)
+{
+    Html ticks;
+    double taken = std::numeric_limits<double>::lowest();
+    for (const double tick : axis.ticks()) {
+        const double x = axis.place(tick, left, right);
+        ticks += svg_line(x, top, x, bottom, "grid");
+        const std::string label = axis.label(tick);
+        const double half = text_width(label, small_size) / 2;
+        if (x - half < taken) continue;
+        ticks += svg_text(x, bottom + 15, "small middle", label);
+        taken = x + half + 6;
+    }
+    return ticks;
+}
+
+Html vertical_ticks(const Axis& axis, double left, double right, double top, double bottom)
+{
+    Html ticks;
+    double taken = std::numeric_limits<double>::max();
+    for (const double tick : axis.ticks()) {
+        const double y = axis.place(tick, bottom, top);
+        ticks += svg_line(left, y, right, y, "grid");
+        if (y + small_size > taken) continue;
+        ticks += svg_text(left - 6, y + 4, "small end", axis.label(tick));
+        taken = y;
+    }
+    return ticks;
+}
 
 namespace {
 

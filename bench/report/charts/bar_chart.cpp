@@ -1,7 +1,6 @@
 #include "bench/report/charts/bar_chart.h"
 
 #include "bench/report/charts/axis.h"
-#include "bench/report/charts/ticks.h"
 #include "bench/report/html/svg.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "bench/reproduce/tables/pictures.h"
 
 #include "bench/pictures/false_colour.h"
-#include "bench/pictures/picture_name.h"
+#include "bench/pictures/images.h"
 #include "bench/pictures/shading.h"
 #include "bench/reproduce/tables/tables.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/pictures/picture_writer.h"
+#include "bench/pictures/images.h"
 #include "bench/reproduce/scene_run.h"
 
 #include <filesystem>

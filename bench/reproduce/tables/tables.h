@@ -6,7 +6,6 @@
 #include "bench/reproduce/search_run.h"
 #include "bench/reproduce/tables/paper_table.h"
 #include "bench/statistics/break_even.h"
-#include "bench/statistics/paired_ratio.h"
 
 #include <utility>
 #include <vector>

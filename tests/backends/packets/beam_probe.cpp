@@ -22,10 +22,6 @@ using tetrace::test::BeamQuestion;
 
 #include "backends/openmp/packet/walk.h"
 
-#include "backends/openmp/packet/start.h"
-
-#include "backends/openmp/packet/double3.h"
-
 #include "backends/openmp/packet/beams.h"
 
 float within_domain(float place)

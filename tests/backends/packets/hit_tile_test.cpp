@@ -1,4 +1,4 @@
-#include "backends/openmp/hit_tile.h"
+#include "backends/openmp/packet_session.h"
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ void expect_equal(const Hit& a, const Hit& b, std::size_t index)
 }
 
 // An image that begins `shift` hits after the start of its memory, so that its rows begin anywhere in a cache line,
-// with untouched hits before and behind it.
+// with untouched hits before and after it.
 void store_image(std::uint32_t width, std::uint32_t height, std::size_t shift)
 {
     SCOPED_TRACE(testing::Message() << width << " x " << height << ", shifted by " << shift);

@@ -86,7 +86,7 @@ TEST_P(Packets, have_the_scalar_kernels_bits_where_rays_pass_vertices_and_edges)
     const DeviceRays rays(grid_of({lines, lines, lines}), Layout::half32);
     expect_scalar_bits(rays, along_lines(17, 17, {0.25f, 0, 3}), "along lines");
     expect_scalar_bits(rays, along_lines(17, 17, {0, 0, 4}), "on an axis");
-    expect_scalar_bits(rays, along_lines(50, 41, {0.1f, 0.2f, 3}), "beside lines");
+    expect_scalar_bits(rays, along_lines(50, 41, {0.1f, 0.2f, 3}), "next to lines");
     expect_scalar_bits(rays, along_lines(23, 9, {3, 3, 3}), "along a diagonal");
 }
 

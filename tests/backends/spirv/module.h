@@ -16,7 +16,7 @@
 
 namespace tetrace::spirv {
 
-/// A scalar of a push constant block: its path of member names, its offset in bytes, what it is.
+/// A scalar of a push constant block: its path of member names, its offset in bytes, its type.
 struct Member {
     std::string path;
     std::uint32_t offset;
@@ -36,7 +36,7 @@ struct Array {
 /// A SPIR-V module, as far as the checks read it. Source: SPIR-V Specification 1.6, sections 2.3 and 3.
 class Module {
 public:
-    /// Throws std::runtime_error if the bytes are no module.
+    /// Throws std::runtime_error if the bytes are not a module.
     explicit Module(std::span<const std::byte> bytes) : words_(bytes.size() / 4)
     {
         std::memcpy(words_.data(), bytes.data(), 4 * words_.size());

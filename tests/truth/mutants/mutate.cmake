@@ -1,9 +1,9 @@
-# Script of tetrace_mutate(): -DINPUT -DOUTPUT -DFROM -DTO. The text must stand in the input exactly once.
+# Script of tetrace_mutate(): -DINPUT -DOUTPUT -DFROM -DTO. The input must contain the text exactly once.
 file(READ ${INPUT} text)
 string(FIND "${text}" "${FROM}" first)
 string(FIND "${text}" "${FROM}" last REVERSE)
 if(first EQUAL -1 OR NOT first EQUAL last)
-  message(FATAL_ERROR "Mutating ${INPUT}: '${FROM}' does not stand in it exactly once; the kernels have changed: "
+  message(FATAL_ERROR "Mutating ${INPUT}: it does not contain '${FROM}' exactly once; the kernels have changed:  "
                       "change tests/truth/mutants/CMakeLists.txt too")
 endif()
 string(REPLACE "${FROM}" "${TO}" text "${text}")

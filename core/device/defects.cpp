@@ -1,0 +1,64 @@
+#include "core/device/defects.h"
+
+#include <numeric>
+
+namespace tetrace {
+
+namespace {
+
+constexpr std::uint32_t word_count = 64;
+
+std::uint32_t own_number(std::uint32_t item)
+{
+    return item;
+}
+
+std::uint32_t after_70000_steps(std::uint32_t value)
+{
+    for (int i = 0; i < 70000; ++i)
+        value = value * 1664525u + 1013904223u;
+    return value;
+}
+
+/// The same walk in one loop. Word i is i.
+std::uint32_t counted_steps(std::uint32_t item)
+{
+    const std::uint32_t end = 24 + 3 * item;
+    std::uint32_t at = item;
+    for (std::uint32_t step = 0; step < end; ++step)
+        at = (at + 11 + (at % 7 == 0 ? 1 : 0)) % word_count;
+    return end * word_count + at;
+}
+
+} // namespace
+
+std::span<const Defect> all_defects()
+{
+    static constexpr Defect defects[] = {
+        {"value_after_divergent_loop",
+         "a value that is loaded in a loop which items leave at different times, and used after it",
+         "lavapipe of Mesa 22.3", own_number},
+        {"loop_of_70000_iterations", "a loop of more than 65,535 iterations", "lavapipe of Mesa 22.3",
+         after_70000_steps},
+        {"steps_of_nested_loops", "steps counted in nested loops, the inner of which ends at a tie",
+         "lavapipe of Mesa 22.3", counted_steps},
+    };
+    return defects;
+}
+
+std::vector<std::uint32_t> defect_words()
+{
+    std::vector<std::uint32_t> counting(word_count);
+    std::iota(counting.begin(), counting.end(), 0u);
+    return counting;
+}
+
+std::vector<std::uint32_t> wrong_items(const Defect& defect, std::span<const std::uint32_t> found)
+{
+    std::vector<std::uint32_t> wrong;
+    for (std::uint32_t item = 0; item < defect_items; ++item)
+        if (found.size() != defect_items || found[item] != defect.expected(item)) wrong.push_back(item);
+    return wrong;
+}
+
+} // namespace tetrace
