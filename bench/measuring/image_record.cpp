@@ -183,9 +183,8 @@ void require_possible(const ImageRecord& record)
 
 nlohmann::json samples_json(const RowSamples& samples)
 {
-    json object = {{"samples_s", samples.samples_s},
-                   {"wall_samples_s", samples.wall_samples_s},
-                   {"sampled_s", samples.sampled_s}};
+    json object = {
+        {"samples_s", samples.samples_s}, {"wall_samples_s", samples.wall_samples_s}, {"sampled_s", samples.sampled_s}};
     if (!samples.latency_samples_s.empty()) object["latency_samples_s"] = samples.latency_samples_s;
     if (samples.passes > 1) object["passes"] = samples.passes;
     if (samples.gpu) object["gpu"] = gpu_readings_json(*samples.gpu);
