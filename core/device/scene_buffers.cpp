@@ -55,9 +55,15 @@ std::vector<SceneBuffer> scene_buffers(const PackedScene& scene)
     buffers.resize(std::max<std::size_t>(buffers.size(), binding + 1));                                                \
     buffers[binding] = buffer_of(#member, scene.member);
     switch (traits_of(scene.layout).family) {
-    case Family::cdt: break;
-    case Family::compact: break;
-    case Family::bvh: break;
+    case Family::cdt:
+#include "kernels/layouts/cdt_arrays.h"
+        break;
+    case Family::compact:
+#include "kernels/layouts/compact_arrays.h"
+        break;
+    case Family::bvh:
+#include "kernels/bvh/bvh_arrays.h"
+        break;
     case Family::foreign: break;
     }
 #undef SCENE_ARRAY
