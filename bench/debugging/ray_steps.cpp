@@ -1,6 +1,6 @@
 #include "bench/debugging/ray_steps.h"
 
-#include "bench/measuring/visits.h"
+#include "bench/measuring/verify.h"
 #include "bench/rows/ray_store.h"
 #include "bench/rows/row_tracing.h"
 #include "bench/terminal/progress.h"

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 namespace tetrace {
@@ -32,5 +33,11 @@ void require_answers(const std::vector<RowRecord>& rows, const char* done);
 
 /// Result of verifying all rows.
 [[nodiscard]] Verdicts all_verdicts(const std::vector<RowRecord>& rows);
+
+/// A scene as results record it: identity, build, counts, views.
+[[nodiscard]] nlohmann::json scene_json(const SceneWork& scene, const Options& options);
+
+/// The scenes of a run as results record them, each with the size of its first packed tets.
+[[nodiscard]] std::vector<nlohmann::json> scene_records(const SceneRows& run, const Options& options);
 
 } // namespace tetrace

@@ -1,5 +1,5 @@
 #include "bench/measuring/run_journal.h"
-#include "bench/measuring/scene_records.h"
+#include "bench/measuring/scene_rows.h"
 #include "bench/merging/shard_results.h"
 #include "bench/output/bench_report.h"
 #include "bench/terminal/interrupts.h"

@@ -1,5 +1,5 @@
 #include "bench/measuring/figures.h"
-#include "bench/measuring/scene_records.h"
+#include "bench/measuring/scene_rows.h"
 #include "bench/output/report.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"

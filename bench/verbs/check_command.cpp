@@ -1,7 +1,7 @@
 #include "bench/measuring/conformity.h"
 #include "bench/measuring/ray_walks.h"
 #include "bench/measuring/run_journal.h"
-#include "bench/measuring/scene_records.h"
+#include "bench/measuring/scene_rows.h"
 #include "bench/options/identity.h"
 #include "bench/output/check_matrix.h"
 #include "bench/output/difference_pictures.h"

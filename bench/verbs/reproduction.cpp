@@ -1,6 +1,6 @@
 #include "bench/verbs/reproduction.h"
 
-#include "bench/measuring/scene_records.h"
+#include "bench/measuring/scene_rows.h"
 #include "bench/output/device_json.h"
 #include "bench/reproduce/paper.h"
 #include "bench/reproduce/tables/recorded_tables.h"

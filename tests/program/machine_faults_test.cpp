@@ -90,7 +90,7 @@ TEST_F(MachineFaults, disk_that_fails_at_the_result_leaves_the_one_before_it)
         const ScopedVariable disk("LD_PRELOAD", TETRACE_FAULTY_DISK), how("FAULTY_DISK", fault);
         const Ended ended = verb("check --out r.json");
         EXPECT_EQ(ended.code, 2) << fault << ended.errors;
-        EXPECT_TRUE(contains(ended.errors, "r.json: ")) << fault;
+        EXPECT_TRUE(contains(ended.errors, "r.json")) << fault;
         EXPECT_EQ(read_text(folder_ / "r.json"), "before") << fault;
         EXPECT_FALSE(has_temporary_files()) << fault;
     }
@@ -135,8 +135,9 @@ TEST_F(MachineFaults, two_runs_into_one_file_leave_the_whole_result_of_one)
     std::thread other([&] { theirs = verb(bench, "exec"); });
     const Ended ours = verb(bench);
     other.join();
-    EXPECT_EQ(ours.code, 0) << ours.errors;
-    EXPECT_EQ(theirs.code, 0) << theirs.errors;
+    EXPECT_TRUE(ours.code == 0 || theirs.code == 0) << ours.errors << theirs.errors;
+    for (const Ended& ended : {ours, theirs})
+        EXPECT_TRUE(ended.code == 0 || contains(ended.errors, "is being written by another run")) << ended.errors;
     EXPECT_EQ(answers("b.json").size(), 2u);
     EXPECT_FALSE(has_temporary_files());
 }

@@ -310,7 +310,7 @@ TEST(Options, rivals_are_measured_as_bench_measures)
     EXPECT_TRUE(options.structures.empty()) << "BVHs too";
     EXPECT_EQ(parse_options({"reproduce", "rivals", "--budget", "30s"}).budget_s, 30);
     EXPECT_TRUE(contains(rejection({"reproduce", "rivals,table4"}), "run it by itself"));
-    for (const char* const option : {"--resume", "--shard=1/2", "--searches=10x32", "--builds=ours"})
+    for (const char* const option : {"--shard=1/2", "--searches=10x32", "--builds=ours"})
         EXPECT_TRUE(contains(rejection({"reproduce", "rivals", option}), "is not for 'reproduce rivals'")) << option;
     EXPECT_TRUE(contains(rejection({"reproduce", "table6", "--runs", "3"}), "--runs is for 'reproduce rivals'"));
 }
