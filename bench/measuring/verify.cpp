@@ -6,7 +6,7 @@
 #include "bench/truth/oracle.h"
 #include "core/base/hash.h"
 #include "core/base/stopwatch.h"
-#include "core/device/host_session.h"
+#include "core/device/host.h"
 
 #include <algorithm>
 #include <fmt/format.h>
