@@ -1,4 +1,4 @@
-# What a person types; everything else is CMake (see CMakePresets.json). `make` alone prints what there is.
+# What a person types; everything else is CMake (see CMakePresets.json). `make` prints the targets.
 JOBS ?= $(shell nproc)
 TETRACE = build/release/bin/tetrace
 comma := ,
@@ -11,17 +11,17 @@ scenes = $(if $(QUICK),--scene bunny)
 
 help:
 	@echo "make bench    install what is missing, build, run the main job; table, JSON, page, pictures (build/bench/);"
-	@echo "              QUICK=1: bunny alone, in small images"
+	@echo "              QUICK=1: only bunny, in small images"
 	@echo "make first    the part of make bench that comes first on a new machine: a small table within minutes"
 	@echo "make test     install what is missing, build, run all tests"
 	@echo "make sanitize the small tests once more, under AddressSanitizer and UndefinedBehaviorSanitizer, then make fuzz;"
-	@echo "              ROOMS=core,scenes: the tests of these folders of tests/ alone"
+	@echo "              ROOMS=core,scenes: only the tests of these folders of tests/"
 	@echo "make sanitize-threads  the tests of what has threads that share data, under ThreadSanitizer (clang)"
-	@echo "make fuzz     libFuzzer (clang) on what tetrace reads, FUZZ_SECONDS=60 each; TARGETS='ply journal': those alone"
+	@echo "make fuzz     libFuzzer (clang) on what tetrace reads, FUZZ_SECONDS=60 each; TARGETS='ply journal': only those"
 	@echo "make build    install what is missing, build build/release/bin/tetrace"
 	@echo "make bundle   build build/release/bundle, a folder to copy to a machine with a GPU and run there"
 	@echo "make deb      build packages of this Debian: tetrace, and tetrace-builder under licences of its own"
-	@echo "make cluster-test  share a run by mpirun, Slurm and GNU parallel, on this machine alone; VIEWS=0-1281: all views"
+	@echo "make cluster-test  share a run by mpirun, Slurm and GNU parallel, only on this machine; VIEWS=0-1281: all views"
 	@echo "make format   format the sources"
 	@echo "make lint     check formatting, and the sources with clang-tidy"
 	@echo "make clean    remove build/"
@@ -35,7 +35,7 @@ build:
 # A row in error, of a driver that crashes, is in the page too: exit code 1 comes last.
 # On a new machine there is a first table before that is compiled which it does not need: other verbs and kernels.
 bench:
-	@[ -e $(TETRACE) ] || $(MAKE) first || echo "There was no first table; going on."
+	@[ -e $(TETRACE) ] || $(MAKE) first || echo "The first table failed; going on."
 	@$(MAKE) build
 	@mkdir -p build/bench
 	$(TETRACE) bench $(scenes) $(if $(QUICK),--size 384 --budget 40s) --out build/bench/result.json; status=$$?; \

@@ -36,7 +36,7 @@ std::string ptx_of(const Programs& programs, const EmbeddedKernel& source, const
 }
 
 /// A kernel's source with its includes resolved; its PTX, if NVRTC is here; and nvcc's code, if this build has that.
-/// Empty if there is no such kernel.
+/// Empty without such a kernel.
 std::vector<KernelFile> files_of(const Programs& programs, const KernelId& kernel)
 {
     const ProgramId id = program_of(kernel);

@@ -114,7 +114,7 @@ class Module {
 public:
     /// Throws Error{unsupported} if the driver cannot use the image: it names the driver's error and its log.
     Module(Context& context, std::span<const std::byte> image, const std::string& name);
-    /// Throws Error{internal} if the module has no such entry.
+    /// Throws Error{internal} if the module lacks the entry.
     [[nodiscard]] FunctionHandle function(const std::string& name) const;
 
 private:

@@ -154,8 +154,8 @@ try {
     context.driver().driver_version(&version);
     throw Error(ErrorKind::unsupported, std::string(error.what()) + "; it was made by " + compiler +
                                             ", the driver is of CUDA " + version_text(version) +
-                                            ": a newer driver, or NVRTC of a CUDA that this driver knows (package " +
-                                            "nvidia-cuda-toolkit), brings it");
+                                            ": install a newer driver, or NVRTC of a CUDA that this driver supports " +
+                                            "(package nvidia-cuda-toolkit)");
 }
 
 /// NVRTC's module, from the cache if it is there; second: whether it was.

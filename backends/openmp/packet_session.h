@@ -13,7 +13,7 @@
 
 namespace tetrace::openmp {
 
-/// The hits of a block of pixels, traced in the near caches before they go to their image. Where the processor can,
+/// The hits of a block of pixels, traced in the near caches before they go to their image. If the processor can,
 /// they then go past its caches, a line at a time: no line of the image is read first, and none pushes out what rays
 /// need.
 class HitTile {

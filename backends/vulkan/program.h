@@ -88,7 +88,7 @@ private:
     /// Buffers that a dispatch is given.
     struct Set {
         vk::raii::DescriptorPool pool{nullptr};
-        vk::raii::DescriptorSet handle{nullptr}; ///< null if there are no bindings
+        vk::raii::DescriptorSet handle{nullptr}; ///< null without bindings
     };
     void make_layout(const Context& context, const ProgramId& id);
     [[nodiscard]] Set make_set(const Context& context) const;

@@ -38,7 +38,7 @@ struct EntryPoint {
 };
 
 /// Every entry point of our kernels that the maker's GPUs get, in the kernels' order. AMD's have no schedule
-/// persistent: Vulkan has no such kernels.
+/// persistent: Vulkan lacks such kernels.
 [[nodiscard]] std::vector<EntryPoint> all_entry_points(Maker maker);
 
 /// Whether --structure, --method, --layout, --schedule, --math and --entry keep it. Defaults: as for rows, and math

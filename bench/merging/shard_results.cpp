@@ -40,7 +40,7 @@ void require_same_heads(const ShardResult& a, const ShardResult& b)
                  fmt::format("'{}'", fmt::join(b.arguments, " ")));
 }
 
-/// A scene of which one shard has no view is only in the others.
+/// A scene without a view in one shard is only in the others.
 void require_same_scenes(const ShardResult& a, const ShardResult& b)
 {
     for (const ResultScene& scene : a.result.scenes)

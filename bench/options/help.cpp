@@ -42,7 +42,7 @@ const VerbHelp verb_help[] = {
      "layout, kind of rays, math mode, backend and device.\n\n"
      "First, each row traces every selected view once, and every hit is verified. Then each row warms up and is "
      "sampled with Google Benchmark; the rows are interleaved at random. A sample traces all views in flight "
-     "together, which gives the throughput; some passes launch each view alone, which gives the latency. Last, it "
+     "together, which gives the throughput; some passes launch each view separately, which gives the latency. Last, it "
      "measures the copy bandwidth and the launch latency of each device. Each row is compared with the same kernel "
      "under other APIs and with the fastest BVH on its hardware, with 95 % intervals computed from the samples. GPU "
      "APIs that are emulated on the CPU are marked, and never ranked with GPUs. For each kind of rays, the table "
@@ -54,7 +54,7 @@ const VerbHelp verb_help[] = {
      "exit face or reached its cap of steps (their number is printed, and the row keeps its rate; lost rays of maria "
      "and project, which claim to have none, give exit code 1); 'wrong', the row's hits differ from openmp's (no "
      "rate, exit code 1); 'unsupported', the host or the device cannot run this kernel; 'skipped', no usable device "
-     "is here, or --budget has no time for the row; 'error'. The last three have a reason. 'noisy' replaces 'ok' if "
+     "is here, or --budget leaves no time for the row; 'error'. The last three have a reason. 'noisy' replaces 'ok' if "
      "the interquartile range exceeds 5 % of the median, if other processes used more than a tenth of the CPUs, or if "
      "calibration (a fixed piece of work, repeated throughout the run) was a quarter slower during half of the "
      "samples.\n\n"
@@ -167,9 +167,9 @@ const VerbHelp verb_help[] = {
      "does not return its own.\n\n"
      "One kernel is followed: maria on tet80 by default; --method project without --layout means half32. --rays "
      "follows the ray of that kind that was made for the pixel, from the face on which it starts. Our BVHs (--layout "
-     "bvh2, bvh4, cwbvh) have no steps, because their kernels do not report the nodes they visit; the hits are shown, "
+     "bvh2, bvh4, cwbvh) lack steps, because their kernels do not report the nodes they visit; the hits are shown, "
      "and how many nodes and triangles openmp visits. Embree's kernels and a driver's (rt) return only the hit, and "
-     "are refused. Exits with 1 if a device differs from openmp, with 2 if there is no such ray, and with 3 if none "
+     "are refused. Exits with 1 if a device differs from openmp, with 2 if the ray does not exist, and with 3 if none "
      "of the selected devices could trace it.",
      "  tetrace trace --scene cubes --pixel 128,100\n"
      "  tetrace trace --scene bunny --view 2 --pixel 300,17 --size 512 --method project --backend vulkan\n"
@@ -200,7 +200,7 @@ const VerbHelp verb_help[] = {
      "per row; with 5 to 9, it is at most 1 in 100 for each row. Two runs also differ in ways that their samples do "
      "not show: the tolerance is for that.\n\n"
      "Three or more results are printed side by side, a column each, with ratios to the first, for the rows that did "
-     "the same work; the others are listed with the reason. There are no verdicts, and the exit code is 0.\n\n"
+     "the same work; the others are listed with the reason. Verdicts are not given, and the exit code is 0.\n\n"
      "With two results, exits with 1 if a row is SLOWER by more than the tolerance, FAILED or MISSING (see "
      "--allow-missing). Exits with 2, and names the rows, if all are DIFFERENT.",
      "  tetrace compare before.json after.json\n"
@@ -307,7 +307,7 @@ std::string program_text()
     text += "\n" + wrapped("'tetrace help VERB' or 'tetrace VERB --help' describes a verb with all its options. "
                            "Results go to standard output, or to --out FILE: either the complete file is written, or "
                            "none, with exit code 2. Messages and progress go to standard error: a line that is "
-                           "redrawn, or a line every 30 seconds if there is no terminal. On a terminal, output has "
+                           "redrawn, or a line every 30 seconds without a terminal. On a terminal, output has "
                            "colours unless NO_COLOR is set, and tables and sentences fit the width.",
                            page_width(), 0);
     text += "\nExamples\n"

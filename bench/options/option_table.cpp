@@ -270,7 +270,7 @@ std::vector<OptionRow> judging_options()
          "5 (or --samples, if less), since fewer give no interval. If 5 do not fit, the slowest rows are skipped, "
          "or whole scenes, the last one first, and the result states the budget that they need. One row is always "
          "measured, unless it needs four budgets; otherwise a run exceeds the budget by at most a quarter. Loading "
-         "scenes and opening devices does not count. With --benchmark_repetitions there is no limit. Default: 4m.",
+         "scenes and opening devices does not count. --benchmark_repetitions lifts the limit. Default: 4m.",
          bit(Verb::bench), false, set_seconds("--budget", &Options::budget_s)},
         {"Measuring", "--budget", "TIME",
          "Wall-clock time for verifying and timing the rows, shared evenly by the scenes that are left; exit searches "

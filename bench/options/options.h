@@ -192,7 +192,8 @@ struct Options {
 [[nodiscard]] std::vector<std::string> without_options(const std::vector<std::string>& words,
                                                        std::span<const std::string_view> names);
 
-/// Throws Error{usage} if the shard has no view. (`reproduce` has other parts, and does not need one of each scene.)
+/// Throws Error{usage} if the shard is without views. (`reproduce` has other parts, and does not need one of each
+/// scene.)
 void require_views(const Options& options);
 
 /// The view numbers asked for, ascending, of which the shard has its share. Throws Error{usage} as parse_views() does.

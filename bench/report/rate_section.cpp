@@ -170,7 +170,7 @@ const char* const how_to_read_times =
     "compile what is left; kernel: device time; launch: launching and waiting, which is the rest of the wall time; "
     "download: the hits to the host. Medians of the samples, except for the one-time figures and the download.";
 
-/// Empty if the row has no such value.
+/// Empty if the row lacks the value.
 Cell cell_of_field(const RowField& field, const ResultValue& row)
 {
     const auto group = *field.group == '\0' ? row : row.find(field.group);

@@ -36,7 +36,7 @@ bool is_about(const RivalClaim& claim, const Contest& contest)
            (!claim.tets || may_have_tets(contest, *claim.tets));
 }
 
-/// Why the rows have no rate; empty if one has, or if there are none.
+/// Why the rows lack a rate; empty if one has a rate, or without rows.
 std::string reason_without_rate(const std::vector<const RowRecord*>& rows)
 {
     if (rows.empty() || fastest(rows) != nullptr) return {};

@@ -52,7 +52,7 @@ void clear_and_end(int signal)
     std::raise(signal);
 }
 
-/// Leaves signals alone that are ignored or that others handle.
+/// Does not touch signals that are ignored or that others handle.
 void clear_when_interrupted()
 {
     static_assert(decltype(columns_to_clear)::is_always_lock_free, "read by a signal handler");

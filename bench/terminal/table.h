@@ -23,7 +23,7 @@ using Cell = std::variant<std::monostate, std::string, std::uint64_t, double>;
     return text.empty() ? Cell() : Cell(text);
 }
 
-/// A cell that is empty if there is no value.
+/// A cell that is empty without a value.
 template <class T>
 [[nodiscard]] Cell cell_of(const std::optional<T>& value)
 {

@@ -28,7 +28,7 @@ concept NamedEnum = requires
     enum_names<Enum>.size();
 };
 
-/// Throws Error{internal} if the enum has no such value.
+/// Throws Error{internal} if the enum lacks the value.
 [[nodiscard]] constexpr std::string_view name_of(NamedEnum auto value)
 {
     const auto& names = enum_names<decltype(value)>;

@@ -72,7 +72,7 @@ struct CompiledCode {
 /// A file for those who look into a kernel without this program.
 struct KernelFile {
     std::string name;
-    std::string what;    ///< what it is, and what else compiling it needs; without a full stop
+    std::string what;    ///< a description, and what else compiling it needs; without a full stop
     std::string command; ///< that makes or compiles it without tetrace; empty if there is none
     std::string bytes;
 };

@@ -21,7 +21,7 @@ static_assert(sizeof(Quad) == 16, "quads are uvec4 / uint4 on a device");
 
 /// The tet that rays start in, for layouts whose tets do not store their vertices.
 struct StartTet {
-    std::array<std::uint32_t, 4> vertices{}; ///< numbered as they are packed
+    std::array<std::uint32_t, 4> vertices{}; ///< with their packed numbers
     std::uint32_t neighbour = 0;             ///< PackedScene::last_neighbours
 
     friend bool operator==(const StartTet&, const StartTet&) = default;

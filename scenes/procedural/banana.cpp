@@ -1,5 +1,5 @@
 // A tube along an arc of a circle; its radius tapers towards both ends and closes there with round caps. Only + - * /
-// and square roots of doubles, so the same bits come out everywhere: rings and sides rotate by constants, and the arc
+// and square roots of doubles, so the bits are the same everywhere: rings and sides rotate by constants, and the arc
 // is the rational one, ((1 - t^2) / (1 + t^2), 2 t / (1 + t^2)).
 #include "scenes/procedural.h"
 

@@ -71,7 +71,7 @@ public:
     /// Throws Error{internal} if the number of cells differs from the number of columns.
     void add(std::vector<Html> cells);
     [[nodiscard]] bool empty() const { return rows_.empty(); }
-    /// Empty if there are no rows. The table scrolls sideways by itself if the page is too narrow for it.
+    /// Empty without rows. The table scrolls sideways by itself if the page is too narrow for it.
     [[nodiscard]] Html html() const;
 
 private:
