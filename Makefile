@@ -42,7 +42,7 @@ bench:
 	    [ $$status -le 1 ] || exit $$status; \
 	    $(TETRACE) render $(scenes) --views 0 --picture normals,steps --out build/bench && \
 	    pictures=$$(ls build/bench/*.png 2>/dev/null | paste -sd,) && \
-	    $(TETRACE) report build/bench/result.json $${pictures:+--picture "$$pictures"} --out build/bench/report.html && \
+	    $(TETRACE) report build/bench/result.json $${pictures:+--image "$$pictures"} --out build/bench/report.html && \
 	    echo "Page: build/bench/report.html; result: build/bench/result.json (its schema: results/README.md)" && \
 	    exit $$status
 

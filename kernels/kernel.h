@@ -20,7 +20,7 @@
 // NEIGHBOUR                                       tet16.h, tet20.h             structure_compact.h
 // AS_SEEN                                         plucker.h, stp.h             whole_face.h
 // WALKS_PATHS                                     project.h                    structure_cdt.h
-// Beginning, BEGINNING_AT, BEGINNING_IN           walk_by_records.h            walk_along_paths.h, trace_along_paths.h
+// WalkStart, WALK_START_AT, WALK_START_IN         walk_by_records.h            walk_along_paths.h, trace_along_paths.h
 // TRAVERSAL_ENTRIES, _AT_ROOT, _GOES_ON           bvh2.h, bvh4.h, cwbvh.h      refill_cuda.h
 // TAKES_RAYS, STARTS_IN_TETS                      methods, entry.h, bvh        entry files: which tasks there are
 // SEARCHES_EXITS                                  search.h                     entry files

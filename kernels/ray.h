@@ -45,7 +45,7 @@ STRUCT(Hit)
 
 // Components below 2^-20 of the optical axis become zero: then no intermediate product is denormal
 // (docs/spec/numbers.md, N1).
-KERNEL_FN real without_dust(real a)
+KERNEL_FN real flush_tiny(real a)
 {
     return magnitude(a) < real(9.5367431640625e-7f) ? real(0.0f) : a;
 }
@@ -66,7 +66,7 @@ KERNEL_FN Ray primary_ray(TraceParams params, uint x, uint y)
     PRECISE real dx = params.corner.x + params.step_x.x * px + params.step_y.x * py;
     PRECISE real dy = params.corner.y + params.step_x.y * px + params.step_y.y * py;
     PRECISE real dz = params.corner.z + params.step_x.z * px + params.step_y.z * py;
-    return make_ray(params.origin, VEC3(without_dust(dx), without_dust(dy), without_dust(dz)));
+    return make_ray(params.origin, VEC3(flush_tiny(dx), flush_tiny(dy), flush_tiny(dz)));
 }
 
 // A given ray, from its quads (layout.h).

@@ -20,7 +20,7 @@ KERNEL_FN uint deepest_axis(Vec3 direction)
 }
 
 // The axes in cyclic order, such that `axis` is the third.
-KERNEL_FN Vec3 turned_to(Vec3 a, uint axis)
+KERNEL_FN Vec3 permuted_to(Vec3 a, uint axis)
 {
     real x = axis == 0u ? a.z : axis == 1u ? a.y : a.x;
     real y = axis == 0u ? a.x : axis == 1u ? a.z : a.y;
@@ -29,7 +29,7 @@ KERNEL_FN Vec3 turned_to(Vec3 a, uint axis)
 }
 
 // The other way round: its axes in cyclic order, and `axis` the third.
-KERNEL_FN Vec3 turned_from(Vec3 a, uint axis)
+KERNEL_FN Vec3 permuted_from(Vec3 a, uint axis)
 {
     real x = axis == 0u ? a.y : axis == 1u ? a.z : a.x;
     real y = axis == 0u ? a.z : axis == 1u ? a.x : a.y;
@@ -48,8 +48,8 @@ KERNEL_FN Shear shear_along(Vec3 direction)
     PRECISE real y = component(direction, axis_y) * real(-1048576.0f);
     PRECISE real z = deepest * real(1048576.0f);
     Shear shear;
-    shear.across = turned_to(VEC3(z, zero, x), axis);
-    shear.upwards = turned_to(VEC3(zero, z, y), axis);
+    shear.across = permuted_to(VEC3(z, zero, x), axis);
+    shear.upwards = permuted_to(VEC3(zero, z, y), axis);
     return shear;
 }
 

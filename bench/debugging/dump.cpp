@@ -84,11 +84,13 @@ std::vector<KernelFile> dumped_files(const Options& options, const std::vector<B
     const Backend& backend = chosen(options, backends);
     std::vector<KernelFile> files = backend.kernel_files(kernel);
     if (files.empty())
-        throw Error(ErrorKind::usage,
-                    fmt::format("dump: {} has neither source nor code of {}{}", backend.name(), name_of(kernel),
-                                backend.devices().front().kind == DeviceKind::cpu || backend.name() == "cuda-host"
-                                    ? ": its kernels are parts of this program; objdump -d shows them"
-                                    : ""));
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("dump: {} has neither source nor code of {}{}", backend.name(), name_of(kernel),
+                        std::ranges::none_of(all_kernels(),
+                                             [&](const KernelId& one) { return !backend.kernel_files(one).empty(); })
+                            ? ": its kernels are parts of this program; objdump -d shows them"
+                            : ""));
     return files;
 }
 

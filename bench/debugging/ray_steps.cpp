@@ -201,7 +201,7 @@ void add_products(RayOnDevice& ray, const PixelRay& line, const TetMesh& mesh)
                 product = *next++;
 }
 
-float without_dust(float component)
+float flush_tiny(float component)
 {
     return std::fabs(component) < 0x1p-20f ? 0.0f : component; // as in kernels/ray.h
 }
@@ -253,7 +253,7 @@ PixelRay ray_of(const View& view, const ImagePixel& pixel)
     job.view = view;
     PixelRay ray{view.origin, single_pixel(job, pixel.x, pixel.y).view.corner};
     for (int axis = 0; axis < 3; ++axis)
-        ray.direction[axis] = without_dust(ray.direction[axis]);
+        ray.direction[axis] = flush_tiny(ray.direction[axis]);
     return ray;
 }
 

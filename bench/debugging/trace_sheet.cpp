@@ -47,15 +47,6 @@ struct Trace {
     [[nodiscard]] bool has_steps() const { return key.kernel.structure == Structure::cdt; }
 };
 
-template <class Enum>
-Enum choice(const ResultValue& value)
-{
-    const std::string name = value.line();
-    for (const Enum one : values_of<Enum>())
-        if (name == name_of(one)) return one;
-    value.reject("is '" + name + "', which this tetrace does not know");
-}
-
 /// What `read` makes of the value; throws as ResultValue does.
 template <class Read>
 auto read_as(const ResultValue& value, const char* what, const Read& read)
@@ -139,9 +130,9 @@ KernelId read_kernel(const ResultValue& trace)
 /// Results from before rays were given have none of the keys of those.
 void read_rays(Trace& trace, const ResultValue& value)
 {
-    if (const auto rays = value.find("rays")) trace.key.rays = choice<RayKind>(*rays);
-    if (const auto order = value.find("ray_order")) trace.key.ray_order = choice<RayOrder>(*order);
-    if (const auto order = value.find("order")) trace.key.order = choice<TetOrder>(*order);
+    if (const auto rays = value.find("rays")) read_into(trace.key.rays, *rays);
+    if (const auto order = value.find("ray_order")) read_into(trace.key.ray_order, *order);
+    if (const auto order = value.find("order")) read_into(trace.key.order, *order);
     if (const auto end = value.find("end")) trace.end = end->number();
     const auto start = value.find("start");
     if (!start) return;

@@ -57,12 +57,13 @@ void require_asked(const Inspection& inspection, const std::vector<std::string>&
 {
     for (const std::string& name : required) {
         if (std::ranges::none_of(inspection.rows, [&](const Inspected& row) { return row.target.name == name; }))
-            throw Error(ErrorKind::usage,
-                        fmt::format("--require {0}: {0} is not a target of this run; name it in --target too", name));
+            throw Error(
+                ErrorKind::usage,
+                fmt::format("--require-target {0}: {0} is not a target of this run; name it in --target too", name));
         for (const Inspected& row : inspection.rows)
             if (row.target.name == name && row.status != InspectedStatus::ok)
                 throw Error(ErrorKind::missing,
-                            fmt::format("--require {}: {} is {}: {}", name, name_of(row.point.kernel),
+                            fmt::format("--require-target {}: {} is {}: {}", name, name_of(row.point.kernel),
                                         name_of(row.status), row.reason));
     }
 }

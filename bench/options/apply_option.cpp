@@ -79,12 +79,9 @@ void set_cameras(Options& options, const std::string& text)
         options.own_cameras = read_cameras(text);
         return;
     }
-    for (const CameraSet set : values_of<CameraSet>())
-        if (name_of(set) == text) {
-            options.camera_set = set;
-            return;
-        }
-    reject_value("--camera-set", text, join_names(values_of<CameraSet>()) + ", or a file that ends in .json");
+    const auto set = value_named<CameraSet>(text);
+    if (!set) reject_value("--camera-set", text, join_names(values_of<CameraSet>()) + ", or a file that ends in .json");
+    options.camera_set = *set;
 }
 
 void set_result_file(Options& options, const std::string& text)

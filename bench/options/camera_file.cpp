@@ -79,9 +79,8 @@ private:
         const std::string text = name != whole.end() && name->is_string() ? name->get<std::string>() : std::string();
         if (text.empty() || text.size() > longest_name || printable_line(text) != text)
             reject("name: is not a line of 1 to 100 bytes");
-        for (const CameraSet set : values_of<CameraSet>())
-            if (text == tetrace::name_of(set))
-                reject(fmt::format("name: '{}' is a camera set of tetrace's; choose another", text));
+        if (value_named<CameraSet>(text))
+            reject(fmt::format("name: '{}' is a camera set of tetrace's; choose another", text));
         return text;
     }
 

@@ -35,7 +35,7 @@ std::vector<OptionRow> inspect_options()
          "Keep the entry points of this kind: 'outside' and 'inside', primary rays that start outside the domain or "
          "in a tet; 'rays', given rays; 'search', exit searches of table5. Default: all.",
          bit(Verb::inspect), true, append("--entry", &Options::entries)},
-        {"Compilers", "--require", "GPU",
+        {"Compilers", "--require-target", "GPU",
          "Fail with exit code 3 unless this target's compiler is here and compiles every program.", bit(Verb::inspect),
          true, append_text(&Options::required)},
         {"Compilers", "--code", "FOLDER",

@@ -89,7 +89,7 @@ const VerbHelp verb_help[] = {
      "Default rows: maria, project on half32 and tet64, and our three BVHs. Other exit-face searches are added if "
      "--method names them, and Embree if --structure, --method, --layout, --backend, --filter or --require does.",
      "  tetrace check --scene cubes --require opencl,vulkan --junit check.xml\n"
-     "  tetrace check --scene bunny --backend vulkan --picture differences\n"
+     "  tetrace check --scene bunny --backend vulkan --differences pictures\n"
      "  tetrace check --scene bunny --method all\n"
      "  tetrace check --defects --junit defects.xml\n"
      "  tetrace check --scene bunny --camera-set flight --views 0-1281:40 --out check.json\n"},
@@ -154,7 +154,7 @@ const VerbHelp verb_help[] = {
      "docs/inspect.md explains each column and its limits.",
      "  tetrace inspect\n"
      "  tetrace inspect --target gfx1100 --method all --out inspect.json\n"
-     "  tetrace inspect --target sm_90 --method project --layout half32 --code code --require sm_90\n"},
+     "  tetrace inspect --target sm_90 --method project --layout half32 --code code --require-target sm_90\n"},
     {Verb::trace, "follow one ray, step by step, on every device",
      "Follows the ray of one pixel through the tets on every selected device, next to openmp: each step with its tet, "
      "its exit face, the neighbour, and three side products. The first step at which a device differs from openmp is "
@@ -228,7 +228,7 @@ const VerbHelp verb_help[] = {
      "CPUs; results that record neither are grouped by folder.",
      "  tetrace report bench.json check.json --out report.html\n"
      "  tetrace report results/ --out campaign.html\n"
-     "  tetrace report gpu.json cpu.json --picture bunny-0-normals.png,bunny-0-steps.png\n"},
+     "  tetrace report gpu.json cpu.json --image bunny-0-normals.png,bunny-0-steps.png\n"},
     {Verb::merge, "make one result from the shards of a run",
      "Reads the results that 'bench', 'check' or 'reproduce' wrote with --shard, each with its journal (FILE.journal) "
      "next to it, and makes the result of the whole run: the same counts, verdicts and hashes as without shards, and "

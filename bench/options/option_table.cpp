@@ -20,16 +20,33 @@ std::vector<T> kernels_have(T KernelId::*member)
     return values;
 }
 
-/// "plane, plucker or stp": the methods of the structure's kernels only.
+/// "plane, plucker or stp": the distinct names of one part of the kernels that `keeps` keeps.
 template <class T>
-std::string names_of(Structure structure, T KernelId::*member)
+std::string names_of(T KernelId::*member, bool (*keeps)(const KernelId&))
 {
     std::vector<std::string> names;
     for (const KernelId& kernel : all_kernels())
         if (const std::string name(name_of(kernel.*member));
-            kernel.structure == structure && std::ranges::find(names, name) == names.end())
+            keeps(kernel) && std::ranges::find(names, name) == names.end())
             names.push_back(name);
     return join_alternatives(names);
+}
+template <Structure structure>
+bool is_of(const KernelId& kernel)
+{
+    return kernel.structure == structure;
+}
+template <Family family>
+bool is_bvh_of(const KernelId& kernel)
+{
+    return kernel.structure == Structure::bvh && traits_of(kernel.layout).family == family;
+}
+/// Whether only `project` walks through the layout.
+bool is_projects(const KernelId& kernel)
+{
+    return kernel.structure == Structure::cdt && std::ranges::none_of(all_kernels(), [&](const KernelId& other) {
+               return other.layout == kernel.layout && other.method != Method::project;
+           });
 }
 
 std::vector<OptionRow> reproduce_options()
@@ -120,8 +137,8 @@ std::vector<OptionRow> row_options()
          "pipeline' or '--require embree' is given.",
          selecting & ~bit(Verb::trace), true, append("--structure", &Options::structures)},
         {"Rows", "--method", "NAME",
-         "Keep the rows of this method: " + names_of(Structure::cdt, &KernelId::method) +
-             " (exit-face searches of the cdt), " + names_of(Structure::bvh, &KernelId::method) +
+         "Keep the rows of this method: " + names_of(&KernelId::method, is_of<Structure::cdt>) +
+             " (exit-face searches of the cdt), " + names_of(&KernelId::method, is_of<Structure::bvh>) +
              " (how many rays Embree's BVHs get at once: one, a packet, or a stream of packets, which only Embree 3 "
              "has; other BVHs have only single), or 'all'. Default: maria, project on half32 and tet64, and the "
              "methods of the BVHs if these are kept. Default for 'reproduce': all; table6 compares maria with BVHs, "
@@ -129,11 +146,14 @@ std::vector<OptionRow> row_options()
          reproducing | selecting | bit(Verb::dump), true,
          append_or_all("--method", &Options::methods, kernels_have(&KernelId::method))},
         {"Rows", "--layout", "NAME",
-         "Keep the rows of this memory layout: tet80 or tet96 (cdt), half32, tet64, tet20 or tet16 (cdt with "
-         "project), bvh2, bvh4 or cwbvh (our BVHs), embree, embree_medium or embree_robust (built by Embree itself, "
-         "with quality high or medium, or with flag robust), or rt (built by Vulkan's driver for its own ray "
-         "tracing). Default: all of the structures kept, and rt on GPUs that have it. On emulated devices rt is "
-         "slow: it is a row there only if it is named here, in a filter, or by '--schedule pipeline'.",
+         "Keep the rows of this memory layout: " + names_of(&KernelId::layout, is_of<Structure::cdt>) + " (cdt; " +
+             names_of(&KernelId::layout, is_projects) + " only with project), " +
+             names_of(&KernelId::layout, is_bvh_of<Family::bvh>) + " (our BVHs), or " +
+             names_of(&KernelId::layout, is_bvh_of<Family::foreign>) +
+             " (built by Embree itself, with quality high or medium, or with flag robust, and rt by Vulkan's driver "
+             "for its own ray tracing). Default: all of the structures kept, and rt on GPUs that have it. On emulated "
+             "devices rt is slow: it is a row there only if it is named here, in a filter, or by '--schedule "
+             "pipeline'.",
          reproducing | selecting | bit(Verb::dump), true,
          append("--layout", &Options::layouts, kernels_have(&KernelId::layout))},
         {"Rows", "--backend", "NAME",
@@ -309,17 +329,17 @@ std::vector<OptionRow> judging_options()
          "'normals', the surface shaded by its normals, or 'steps', the steps of each ray in false colour with a scale "
          "bar. Default: normals.",
          bit(Verb::render), true, append("--picture", &Options::pictures)},
-        {"Pictures", "--picture", "FOLDER",
+        {"Pictures", "--differences", "FOLDER",
          "Write a picture of each view in which a row differs from openmp, with the differing pixels marked: PNG, or "
          "PPM if OpenImageIO is missing. Default: none.",
-         bit(Verb::check), false, set_path("--picture", &Options::picture_folder)},
+         bit(Verb::check), false, set_path("--differences", &Options::picture_folder)},
     };
 }
 
 std::vector<OptionRow> report_options()
 {
     return {
-        {"Pictures", "--picture", "FILE",
+        {"Pictures", "--image", "FILE",
          "Add this picture to the page: a PNG or PPM file, as 'tetrace render' writes it. May be repeated, or a "
          "list with commas. Default: only the pictures named by figures in the results.",
          bit(Verb::report), true, [](Options& o, const std::string& v) { o.report_pictures.emplace_back(v); }},

@@ -55,14 +55,26 @@ std::vector<std::string> accepted_options(Verb verb)
     return names;
 }
 
+/// Options that had a name which has another meaning for other verbs.
+struct Renamed {
+    Verb verb;
+    std::string_view before, now;
+};
+constexpr Renamed renamed[] = {{Verb::check, "--picture", "--differences"},
+                               {Verb::report, "--picture", "--image"},
+                               {Verb::inspect, "--require", "--require-target"}};
+
 /// What the first unknown option may have been meant to be.
 std::string guess(Verb verb, const std::vector<std::string>& arguments)
 {
     const auto accepted = accepted_options(verb);
     for (const std::string& argument : arguments) {
         const std::string name = argument.substr(0, argument.find('='));
-        if (name.starts_with("--") && std::ranges::find(accepted, name) == accepted.end())
-            return did_you_mean(name, accepted);
+        if (!name.starts_with("--") || std::ranges::find(accepted, name) != accepted.end()) continue;
+        for (const Renamed& option : renamed)
+            if (option.verb == verb && option.before == name)
+                return fmt::format("; {} of {} is now {}", name, name_of(verb), option.now);
+        return did_you_mean(name, accepted);
     }
     return {};
 }
@@ -231,8 +243,8 @@ void choose_default_views(Options& options)
 }
 
 /// What shards of one run may differ in, and what `merge` gives anew: where output goes, and on what they run.
-constexpr std::string_view own_options[] = {"--shard", "--wait",    "--out",    "--format",  "--resume", "--label",
-                                            "--junit", "--picture", "--device", "--threads", "--columns"};
+constexpr std::string_view own_options[] = {"--shard", "--wait",        "--out",    "--format",  "--resume", "--label",
+                                            "--junit", "--differences", "--device", "--threads", "--columns"};
 
 Options parse_verb(Verb verb, const std::vector<std::string>& arguments)
 {

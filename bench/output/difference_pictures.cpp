@@ -50,7 +50,7 @@ DifferencePictures::DifferencePictures(std::filesystem::path folder)
     std::filesystem::create_directories(folder_, problem);
     if (!std::filesystem::is_directory(folder_))
         throw Error(ErrorKind::invalid_input,
-                    fmt::format("--picture: the folder '{}' cannot be made: {}; name another one", folder_.string(),
+                    fmt::format("--differences: the folder '{}' cannot be made: {}; name another one", folder_.string(),
                                 problem ? problem.message() : "a file has that name"));
 }
 

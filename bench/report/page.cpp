@@ -22,7 +22,7 @@ Section picture_section(const ReportInput& input)
     section.is_empty = pictures.empty();
     section.content =
         pictures.empty()
-            ? paragraph("No picture was given: --picture accepts the PNG and PPM files that 'tetrace render' writes "
+            ? paragraph("No picture was given: --image accepts the PNG and PPM files that 'tetrace render' writes "
                         "(the surface, and the steps of each ray), and 'tetrace check' if a row differs.")
             : side_by_side(pictures);
     return section;

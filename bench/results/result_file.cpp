@@ -272,8 +272,7 @@ DeviceKind device_kind_of(const ResultValue& device)
 {
     const ResultValue type = device.at("type");
     const std::string name = type.line();
-    for (const DeviceKind kind : values_of<DeviceKind>())
-        if (name == name_of(kind)) return kind;
+    if (const auto kind = value_named<DeviceKind>(name)) return *kind;
     type.reject(fmt::format("is '{}', and a device is {}", name, fmt::join(enum_names<DeviceKind>, ", ")));
 }
 

@@ -97,12 +97,9 @@ template <NamedEnum Enum>
 void read_into(Enum& to, const ResultValue& from)
 {
     const std::string name = from.line();
-    for (const Enum one : values_of<Enum>())
-        if (name == name_of(one)) {
-            to = one;
-            return;
-        }
-    from.reject(fmt::format("is '{}'; this tetrace knows {}", name, fmt::join(enum_names<Enum>, ", ")));
+    const auto found = value_named<Enum>(name);
+    if (!found) from.reject(fmt::format("is '{}'; this tetrace knows {}", name, fmt::join(enum_names<Enum>, ", ")));
+    to = *found;
 }
 template <class Value>
 void read_into(std::optional<Value>& to, const ResultValue& from)

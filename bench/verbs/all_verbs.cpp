@@ -1,7 +1,7 @@
 #include "bench/inspection/null_hardware.h"
-#include "bench/verbs/ranks.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
+#include "bench/verbs/ranks.h"
 #include "core/base/error.h"
 
 namespace tetrace {

@@ -26,7 +26,7 @@ int inspect_command(const Options& options)
 {
     check_output(options);
     for (const std::string& name : options.required)
-        static_cast<void>(parse_target("--require", name));
+        static_cast<void>(parse_target("--require-target", name));
     make_code_folder(options);
     const Inspection inspection = inspect(options, progress_line().callback());
     progress_line().clear();

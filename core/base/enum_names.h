@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -45,6 +46,16 @@ template <NamedEnum Enum>
     for (std::size_t i = 0; i < enum_names<Enum>.size(); ++i)
         values.push_back(static_cast<Enum>(i));
     return values;
+}
+
+/// The value of that name; empty if none has it.
+template <NamedEnum Enum>
+[[nodiscard]] constexpr std::optional<Enum> value_named(std::string_view name)
+{
+    const auto& names = enum_names<Enum>;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        if (names[i] == name) return static_cast<Enum>(i);
+    return std::nullopt;
 }
 
 } // namespace tetrace

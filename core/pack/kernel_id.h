@@ -142,7 +142,7 @@ using PackTets = void(PackedScene& packed, const TetMesh& mesh);
 /// Packs a BVH of the mesh: nodes and leaf triangles.
 using PackBvh = PackedScene(const TriangleMesh& mesh, const Bvh& bvh);
 
-// pack_<layout>() of each layout of ours, in pack_<layout>.cpp.
+// pack_<layout>() of each layout of ours, in core/pack.
 #define LAYOUT(name, family, ...) std::conditional_t<Family::family == Family::bvh, PackBvh, PackTets> pack_##name;
 #include "kernels/kernel_list.inc"
 

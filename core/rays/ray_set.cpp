@@ -30,7 +30,7 @@ tetrace::Float3 pixel_direction(const View& view, std::uint32_t x, std::uint32_t
 tetrace::Float3 clean_direction(Double3 direction)
 {
     const auto rounded = tetrace::to_float(direction);
-    return {without_dust(rounded.x), without_dust(rounded.y), without_dust(rounded.z)};
+    return {flush_tiny(rounded.x), flush_tiny(rounded.y), flush_tiny(rounded.z)};
 }
 } // namespace ray_kernel
 

@@ -38,7 +38,7 @@ KERNEL_FN real with_slack(real depth)
 }
 
 // end: ray parameter. A value above 2^64 means no end; a value below 2^-60 means the origin.
-KERNEL_FN Nearest nothing_before(Ray ray, real end)
+KERNEL_FN Nearest no_hit_before(Ray ray, real end)
 {
     Nearest nearest;
     real bounded = end < real(8.67361737988403547e-19f) ? real(0.0f) : minimum(end, real(18446744073709551616.0f));

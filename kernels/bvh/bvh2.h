@@ -38,7 +38,7 @@ KERNEL_FN real box_entry(RayFrame frame, real limit, uint x_low, uint x_high, ui
 KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
 {
     RayFrame frame = frame_of(ray);
-    Nearest nearest = nothing_before(ray, end);
+    Nearest nearest = no_hit_before(ray, end);
 #ifdef HOST_SSE2
     // Before the compiler has the rest of the frame computed; for other rays the loop tests the root again.
     if (entries_of(node_of(scene, 0u), frame, nearest.depth).met == 0u) {

@@ -131,7 +131,7 @@ KERNEL_FN uint child_of(uint4 children, uint key)
 KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
 {
     RayFrame frame = frame_of(ray);
-    Nearest nearest = nothing_before(ray, end);
+    Nearest nearest = no_hit_before(ray, end);
     STACK(stack, STACK_ENTRIES(TRAVERSAL_ENTRIES));
     TRAVERSAL_AT_ROOT(uint)
     do {

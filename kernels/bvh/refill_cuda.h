@@ -53,7 +53,7 @@ KERNEL_FN void trace_refilled(SceneView scene, TraceParams params, const Rays& r
                 if (goes_on) {
                     Ray ray = rays.ray(item);
                     frame = frame_of(ray);
-                    nearest = nothing_before(ray, rays.end(item));
+                    nearest = no_hit_before(ray, rays.end(item));
                     TRAVERSAL_AT_ROOT()
                 } else {
                     item = NO_ITEM;

@@ -28,7 +28,7 @@ KERNEL_FN RayFrame frame_of(Ray ray)
     RayFrame frame;
     frame.origin = ray.origin;
     frame.axis = deepest_axis(ray.direction);
-    Vec3 turned = turned_from(ray.direction, frame.axis);
+    Vec3 turned = permuted_from(ray.direction, frame.axis);
     PRECISE real shear_x = turned.x * real(-1048576.0f);
     PRECISE real shear_y = turned.y * real(-1048576.0f);
     PRECISE real shear_z = turned.z * real(1048576.0f);
@@ -60,7 +60,7 @@ KERNEL_FN Ray ray_of(RayFrame frame)
 KERNEL_FN Seen seen_by(RayFrame frame, uint4 quad)
 {
     Vec3 offset = sub3(VEC3(as_real(quad.x), as_real(quad.y), as_real(quad.z)), frame.origin);
-    Vec3 turned = turned_from(offset, frame.axis);
+    Vec3 turned = permuted_from(offset, frame.axis);
     real forwards = frame.shear.z < real(0.0f) ? real(-1099511627776.0f) : real(1099511627776.0f); // 2^40
     PRECISE real x = turned.x * frame.shear.z + turned.z * frame.shear.x;
     PRECISE real y = turned.y * frame.shear.z + turned.z * frame.shear.y;

@@ -15,9 +15,9 @@
 #undef WALKS_PATHS
 #undef STARTS_IN_TETS
 #undef SEARCHES_EXITS
-#undef Beginning
-#undef BEGINNING_AT
-#undef BEGINNING_IN
+#undef WalkStart
+#undef WALK_START_AT
+#undef WALK_START_IN
 // Include guards:
 #undef TETRACE_KERNELS_HIT_H
 #undef TETRACE_KERNELS_LAUNCH_H

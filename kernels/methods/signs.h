@@ -49,7 +49,7 @@ KERNEL_FN bool is_before(Vec3 a, Vec3 b)
 
 // Whether p x q, which is zero, becomes positive when both vertices are moved by infinitesimals; p is the earlier
 // vertex.
-KERNEL_FN bool is_left_when_moved(Sheared p, Sheared q)
+KERNEL_FN bool is_left_when_perturbed(Sheared p, Sheared q)
 {
     real zero = real(0.0f);
     if (q.y != zero) return q.y > zero;
@@ -68,7 +68,7 @@ KERNEL_FN bool is_left_at_tie(Sheared p, Sheared q, bool p_is_first, real produc
         return plus > minus;
     }
     COUNT_SIGN(2);
-    return p_is_first ? is_left_when_moved(p, q) : !is_left_when_moved(q, p);
+    return p_is_first ? is_left_when_perturbed(p, q) : !is_left_when_perturbed(q, p);
 }
 
 // A test replaces the rule for ties, to show that the rule is needed.

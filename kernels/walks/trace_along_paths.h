@@ -8,15 +8,15 @@
 KERNEL_FN Hit trace(SceneView scene, TraceParams params, Ray ray)
 {
     Shear shear = shear_of(ray);
-    Beginning first;
+    WalkStart first;
     uint start = params.start_tet == NO_TET ? FROM_OUTSIDE : FREE_FACE; // here a compiler sees that it is constant
     if (params.start_tet == NO_TET) {
         Entrance entrance = entrance_of(scene, ray, shear);
         uint half_face = entry_half_face(scene, entrance.index);
         if (half_face == NO_HALF_FACE) return make_no_hit(entrance.index == DEFERRED ? DEFERRED : NO_HIT, NO_TET, 0u);
-        first = BEGINNING_AT(scene, ray, half_face, entrance);
+        first = WALK_START_AT(scene, ray, half_face, entrance);
     } else {
-        first = BEGINNING_IN(scene, ray, shear, params.start_tet, start_face(scene, params.start_tet, ray));
+        first = WALK_START_IN(scene, ray, shear, params.start_tet, start_face(scene, params.start_tet, ray));
     }
     return walk(scene, params, ray, first, start, real(NO_END));
 }
@@ -33,7 +33,7 @@ KERNEL_FN Hit trace_given(SceneView scene, TraceParams params, uint4 direction, 
     Exit exit = exit_from_face(scene, ray, half_face);
     if (exit.tet == NO_TET) return make_no_hit(NO_HIT, NO_TET, 0u);
     uint start = face_triangle(scene, half_face >> 2u, half_face & 3u);
-    Beginning first = BEGINNING_IN(scene, ray, shear, exit.tet, exit.face);
+    WalkStart first = WALK_START_IN(scene, ray, shear, exit.tet, exit.face);
     return walk(scene, params, ray, first, start, as_real(origin.w));
 }
 

@@ -8,17 +8,17 @@
 #include "kernels/walks/path.h"
 
 // How a walk begins.
-#define Beginning Exit
+#define WalkStart Exit
 
 // By the boundary face of the half-face.
-#define BEGINNING_AT(scene, ray, half_face, entrance)                                                                  \
-    beginning_in((half_face) >> 2u, rough_exit_face(scene, (half_face) >> 2u, (half_face)&3u, ray))
+#define WALK_START_AT(scene, ray, half_face, entrance)                                                                 \
+    walk_start_in((half_face) >> 2u, rough_exit_face(scene, (half_face) >> 2u, (half_face)&3u, ray))
 
 // In a tet whose exit face is `face`, or NO_EXIT.
-#define BEGINNING_IN(scene, ray, shear, tet, face) beginning_in(tet, face)
-KERNEL_FN Beginning beginning_in(uint tet, uint face)
+#define WALK_START_IN(scene, ray, shear, tet, face) walk_start_in(tet, face)
+KERNEL_FN WalkStart walk_start_in(uint tet, uint face)
 {
-    Beginning first;
+    WalkStart first;
     first.tet = tet;
     first.face = face;
     return first;
@@ -30,7 +30,7 @@ KERNEL_FN Beginning beginning_in(uint tet, uint face)
 // circle, which it checks once, after STEPS_BEFORE_DOUBT steps.
 // Only the loops' own variables are used after the loops; everything else is loaded again, because some compilers lose
 // it.
-KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, Beginning first, uint start, real end)
+KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, WalkStart first, uint start, real end)
 {
     bool is_endless = end >= real(NO_END);
     bool has_exit = start == FROM_OUTSIDE || first.face != NO_EXIT;

@@ -108,17 +108,17 @@ KERNEL_FN Walker walker_leaving(SceneView scene, Ray ray, Shear shear, uint tet,
 }
 
 // How a walk begins.
-STRUCT(Beginning)
+STRUCT(WalkStart)
 {
     Walker at;
     uint own; // the face by which the ray leaves its first tet, as tet << 2 | face; NO_HALF_FACE if there is none
 };
 
 // By the boundary face of the half-face.
-#define BEGINNING_AT(scene, ray, half_face, entrance) beginning_at(half_face, entrance)
-KERNEL_FN Beginning beginning_at(uint half_face, Entrance entrance)
+#define WALK_START_AT(scene, ray, half_face, entrance) walk_start_at(half_face, entrance)
+KERNEL_FN WalkStart walk_start_at(uint half_face, Entrance entrance)
 {
-    Beginning first;
+    WalkStart first;
     first.at = walker_with(carried_from(entrance.p0), carried_from(entrance.p1), carried_from(entrance.p2),
                            half_face >> 2u, exit_to(half_face), 0u);
     first.at.rotation = ROTATION_OF_CORNERS(half_face & 3u);
@@ -127,10 +127,10 @@ KERNEL_FN Beginning beginning_at(uint half_face, Entrance entrance)
 }
 
 // In a tet whose exit face is `face`, or NO_EXIT.
-#define BEGINNING_IN(scene, ray, shear, tet, face) beginning_in(scene, ray, shear, tet, face)
-KERNEL_FN Beginning beginning_in(SceneView scene, Ray ray, Shear shear, uint tet, uint face)
+#define WALK_START_IN(scene, ray, shear, tet, face) walk_start_in(scene, ray, shear, tet, face)
+KERNEL_FN WalkStart walk_start_in(SceneView scene, Ray ray, Shear shear, uint tet, uint face)
 {
-    Beginning first;
+    WalkStart first;
     first.at = walker_leaving(scene, ray, shear, tet, face & 3u);
     first.own = (tet << 2u) | face;
     if (face == NO_EXIT) first.at.exit = NO_HALF_FACE;
@@ -141,7 +141,7 @@ KERNEL_FN Beginning beginning_in(SceneView scene, Ray ray, Shear shear, uint tet
 // From its beginning to the ray's hit. start, end and the use of exit_ahead(): as in walk_along_paths.h. Loops test at
 // their end, and ties are decided after the inner loop: some devices execute a conditional block even if no lane needs
 // it (docs/spec/devices.md, W1).
-KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, Beginning first, uint start, real end)
+KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, WalkStart first, uint start, real end)
 {
     Shear shear = shear_of(ray);
     bool is_endless = end >= real(NO_END);

@@ -277,11 +277,11 @@ TEST_F(Inspect, targets_that_cannot_be_asked_are_skipped_with_the_reason_and_fai
         EXPECT_EQ(program["status"], "skipped");
         EXPECT_FALSE(program["reason"].get<std::string>().empty());
     }
-    const Ended required = run("inspect --target gfx9999 --method maria --layout tet80 --require gfx9999");
+    const Ended required = run("inspect --target gfx9999 --method maria --layout tet80 --require-target gfx9999");
     EXPECT_EQ(required.code, 3);
-    EXPECT_NE(required.errors.find("--require gfx9999"), std::string::npos) << required.errors;
+    EXPECT_NE(required.errors.find("--require-target gfx9999"), std::string::npos) << required.errors;
     EXPECT_EQ(run("inspect --target SM_90").code, 2);
-    EXPECT_EQ(run("inspect --target gfx9999 --require sm_90 --method maria --layout tet80").code, 2);
+    EXPECT_EQ(run("inspect --target gfx9999 --require-target sm_90 --method maria --layout tet80").code, 2);
 }
 
 TEST_F(Inspect, the_code_is_kept_where_it_is_asked_for)

@@ -32,7 +32,7 @@ namespace {
 
 Ray ray_of(Float3 origin, Float3 direction)
 {
-    const auto clean = [](float a) { return without_dust(a); };
+    const auto clean = [](float a) { return flush_tiny(a); };
     return make_ray(to_vec3(origin), VEC3(clean(direction.x), clean(direction.y), clean(direction.z)));
 }
 Ray ray_to(Float3 origin, Float3 target)
@@ -85,7 +85,7 @@ bvh::Hit trace_all(const PackedScene& packed, const Ray& ray, float end = NO_END
 {
     const SceneView view = view_of(packed);
     const RayFrame frame = frame_of(ray);
-    Nearest nearest = nothing_before(ray, end);
+    Nearest nearest = no_hit_before(ray, end);
     for (std::size_t at = packed.leaf_triangles.size() / LEAF_TRIANGLE_QUADS; at-- > 0;)
         nearest = nearer_triangle(view, frame, nearest, static_cast<uint>(at));
     return hit_of(view, ray, nearest);

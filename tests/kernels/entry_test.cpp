@@ -86,7 +86,7 @@ std::set<uint> brute_force(Float3 origin, Float3 direction, const PackedCubes& c
 uint look_up(Float3 origin, Float3 direction, const PackedCubes& cubes = box())
 {
     const Vec3 d = to_vec3(direction);
-    const Ray ray = make_ray(to_vec3(origin), VEC3(without_dust(d.x), without_dust(d.y), without_dust(d.z)));
+    const Ray ray = make_ray(to_vec3(origin), VEC3(flush_tiny(d.x), flush_tiny(d.y), flush_tiny(d.z)));
     const SceneView view = view_of(cubes.packed);
     return entry_half_face(view, entry_index(view, ray));
 }
@@ -240,7 +240,7 @@ TEST(Hit, a_ray_in_the_triangle_s_plane_gets_the_centroid)
 
 TEST(Entry, tiny_direction_components_are_dropped)
 {
-    EXPECT_EQ(without_dust(0x1p-21f), 0.0f);
-    EXPECT_EQ(without_dust(-0x1p-21f), 0.0f);
-    EXPECT_EQ(without_dust(0x1p-20f), 0x1p-20f);
+    EXPECT_EQ(flush_tiny(0x1p-21f), 0.0f);
+    EXPECT_EQ(flush_tiny(-0x1p-21f), 0.0f);
+    EXPECT_EQ(flush_tiny(0x1p-20f), 0x1p-20f);
 }

@@ -229,7 +229,7 @@ TEST_F(Compare, never_replaces_what_it_compares)
     EXPECT_EQ(file("b.json"), after);
     EXPECT_EQ(run("report a.json --out a.json").code, 2);
     write_file(folder_ / "p.png", "a picture");
-    EXPECT_EQ(run("report a.json --picture p.png --out p.png").code, 2);
+    EXPECT_EQ(run("report a.json --image p.png --out p.png").code, 2);
     EXPECT_EQ(file("a.json"), before);
     EXPECT_EQ(file("p.png"), "a picture");
     EXPECT_EQ(run("compare a.json b.json --out c.json").code, 0);

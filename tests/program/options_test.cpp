@@ -276,17 +276,20 @@ TEST(Options, files_stand_between_options_wherever_they_are_given)
     const Options options = parse_options({"report", "a.json", "--out", "page.html", "b,c.json"});
     EXPECT_EQ(options.files, (std::vector<std::filesystem::path>{"a.json", "b,c.json"}));
     EXPECT_EQ(options.out, "page.html");
-    EXPECT_EQ(parse_options({"report", "--picture", "a.png,b.png", "a.json"}).report_pictures,
+    EXPECT_EQ(parse_options({"report", "--image", "a.png,b.png", "a.json"}).report_pictures,
               (std::vector<std::filesystem::path>{"a.png", "b.png"}));
     EXPECT_TRUE(contains(rejection({"report"}), "no file is given"));
     EXPECT_TRUE(contains(rejection({"bench", "--size", "8", "9"}), "not expected: 9"));
 }
 
-TEST(Options, a_picture_is_a_kind_of_render_and_a_folder_of_check)
+TEST(Options, each_name_has_one_meaning_and_a_former_name_is_answered_with_the_new_one)
 {
-    EXPECT_EQ(parse_options({"check", "--picture", "folder"}).picture_folder, "folder");
+    EXPECT_EQ(parse_options({"check", "--differences", "folder"}).picture_folder, "folder");
     EXPECT_EQ(parse_options({"check", "--junit", "check.xml"}).junit, "check.xml");
     EXPECT_TRUE(contains(rejection({"render", "--picture", "folder"}), "normals or steps"));
+    EXPECT_TRUE(contains(rejection({"check", "--picture", "folder"}), "--picture of check is now --differences"));
+    EXPECT_TRUE(contains(rejection({"report", "--picture=a.png", "a.json"}), "--picture of report is now --image"));
+    EXPECT_TRUE(contains(rejection({"inspect", "--require", "sm_90"}), "--require of inspect is now --require-target"));
     EXPECT_TRUE(contains(rejection({"check", "--junit", ""}), "--junit: the file name is empty"));
 }
 

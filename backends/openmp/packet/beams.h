@@ -162,7 +162,7 @@ LANE_FN void enter_domain(const PacketJob& job, const Eye& eye, BeamWalk& walk, 
     make_rays_through(job, walk.column * eye.sense, walk.row, middle);
     const Words squares = entry_squares(job, middle);
     lanes &= ~lanes_of(equal(squares, all(6 * job.divisions * job.divisions)));
-    ask_faces(job, squares, lanes, [&](Words half_faces, uint asking) {
+    test_faces(job, squares, lanes, [&](Words half_faces, uint asking) {
         Imaged corners[3];
         see_corners(job, eye, walk, half_faces, corners);
         const Mask entering = mask_of(asking) & sure_sides(corners[0], corners[1]).left &

@@ -135,7 +135,7 @@ LANE_FN bool has_rays(const PacketJob& job, Queue& queue)
 // face 0 is treated as if it had entered by face 1 (corners 0 3 2), any other as if it had entered by face 0 (corners 1
 // 2 3).
 template <class T>
-LANE_FN T carried_behind(const Mask* by_face, const T* of, uint i)
+LANE_FN T carried_across(const Mask* by_face, const T* of, uint i)
 {
     constexpr uint behind_first[3] = {1, 3, 2};
     return select(by_face[0], of[behind_first[i]], select(by_face[i + 1], of[0], of[i + 1]));
@@ -167,15 +167,15 @@ LANE_FN void leave_tets(const PacketJob& job, Packet& packet, GivenWalk& walk, u
     Words exit = by(second.exits.of[0], first.exits.of[0], first.exits.of[1], first.exits.of[2]);
     Mask is_end = equal(exit & 3u, all(EXIT_END));
     for (uint i = 0; i < 3; ++i)
-        walk.carried[i] = select(mask, carried_behind(by_face, v, i), walk.carried[i]);
+        walk.carried[i] = select(mask, carried_across(by_face, v, i), walk.carried[i]);
     if constexpr (has_ends) {
         Floats depths[4];
         for (uint i = 0; i < 4; ++i)
             depths[i] = depth_at(packet, apexes[i].of);
         for (uint i = 0; i < 3; ++i)
-            walk.depths[i] = select(mask, carried_behind(by_face, depths, i), walk.depths[i]);
+            walk.depths[i] = select(mask, carried_across(by_face, depths, i), walk.depths[i]);
         walk.reach = depth_of_end(packet);
-        is_end = end_behind(walk, is_end, exit);
+        is_end = end_across(walk, is_end, exit);
     }
     const uint ended = leaving & lanes_of(is_end);
     packet.steps = select(mask, all(1u - steps), packet.steps);

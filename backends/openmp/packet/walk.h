@@ -88,7 +88,7 @@ LANE_FN void end_lanes(Packet& packet, uint lanes, Words exit, Words record, uin
 // The lanes that have ended: those of is_end, and those whose ray ends before it enters the tet across the carried
 // vertices. The exit of the latter becomes NO_HALF_FACE.
 template <int z>
-LANE_FN Mask end_behind(const Walk<z>& walk, Mask is_end, Words& exit)
+LANE_FN Mask end_across(const Walk<z>& walk, Mask is_end, Words& exit)
 {
     const Mask is_beyond =
         greater(walk.depths[0], walk.reach) & greater(walk.depths[1], walk.reach) & greater(walk.depths[2], walk.reach);
@@ -135,7 +135,7 @@ LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint step
         const Floats depth = depth_at(packet, at.apex.of);
         for (uint i = 0; i < 3; ++i)
             walk.depths[i] = select(replaced[i], depth, walk.depths[i]);
-        is_end = end_behind(walk, is_end, exit);
+        is_end = end_across(walk, is_end, exit);
     }
     const uint ended = walk.live & ~ties & lanes_of(is_end);
     end_lanes(packet, ended, exit, walk.record, steps); // without a condition: a branch would mostly be mispredicted
@@ -269,7 +269,7 @@ LANE_FN Quad corners_of(const PacketJob& job, Words half_faces, uint i)
 // Tests the faces of squares of the domain, one per lane at a time, until ask(half-faces, lanes) returns that lanes are
 // done. Returns the lanes whose squares are done.
 template <class Ask>
-LANE_FN uint ask_faces(const PacketJob& job, Words squares, uint lanes, const Ask& ask)
+LANE_FN uint test_faces(const PacketJob& job, Words squares, uint lanes, const Ask& ask)
 {
     LaneWords square, half_face{};
     store(square, select(mask_of(lanes), squares, Words{}));
