@@ -3,7 +3,6 @@
 #include "bench/debugging/dump.h"
 #include "bench/debugging/trace_sheet.h"
 #include "bench/measuring/scene_rows.h"
-#include "bench/measuring/scene_rows.h"
 #include "bench/output/row_fields.h"
 #include "bench/rows/ray_json.h"
 
