@@ -6,8 +6,9 @@
 #define KERNEL_FN [[maybe_unused, gnu::always_inline]] inline
 // What few rays need is a call, so that all others have the registers.
 #define RARE_FN [[maybe_unused, gnu::noinline, gnu::cold]] inline
-#define PRECISE                      // contraction is switched off by the compiler's flags
-#define KEEP_BRANCH asm volatile("") // a compiler makes no select of a branch with such a statement
+#define MAYBE_UNUSED [[maybe_unused]] // before a parameter that some layouts do not need
+#define PRECISE                       // contraction is switched off by the compiler's flags
+#define KEEP_BRANCH asm volatile("")  // a compiler makes no select of a branch with such a statement
 #define STRUCT(name) struct name
 #define VEC3(x, y, z) (Vec3{(x), (y), (z)})
 #define FETCH(scene, array, index) (assert((index) < (scene).array##_size()), (scene).array()[(index)])

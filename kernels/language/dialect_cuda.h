@@ -3,6 +3,7 @@
 #define KERNEL_FN [[maybe_unused]] static __device__ inline
 // A call here would cost all rays more registers than the code itself.
 #define RARE_FN KERNEL_FN
+#define MAYBE_UNUSED [[maybe_unused]]
 #define PRECISE // contraction is switched off by the compiler's flags
 #define STRUCT(name) struct name
 #define VEC3(x, y, z) (Vec3{(x), (y), (z)})

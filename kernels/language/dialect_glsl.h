@@ -9,6 +9,7 @@
 #endif
 #define KERNEL_FN
 #define RARE_FN
+#define MAYBE_UNUSED
 #define STRUCT(name) struct name
 #define VEC3(x, y, z) Vec3(x, y, z)
 // An item's words are GROUP_ITEMS apart, so that its neighbours' are in other banks. An array has one word at least.

@@ -16,6 +16,7 @@
 #ifdef PREDICTS_BRANCHES // from outside: for a processor. A compiler makes no select of a branch with such a statement.
 #define KEEP_BRANCH __asm__ volatile("")
 #endif
+#define MAYBE_UNUSED __attribute__((unused))
 #define PRECISE // contraction is switched off for the whole program
 #define STRUCT(name)                                                                                                   \
     typedef struct name name;                                                                                          \

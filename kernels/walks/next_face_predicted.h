@@ -2,7 +2,8 @@
 // before it is known; a select would wait for it (docs/spec/devices.md, W10).
 
 // replaced: constant, so that what depends on it is, too.
-KERNEL_FN Walker walker_replacing(SceneView scene, RecordExits exits, Walker at, Carried apex, uint replaced)
+KERNEL_FN Walker walker_replacing(MAYBE_UNUSED SceneView scene, RecordExits exits, Walker at, Carried apex,
+                                  uint replaced)
 {
     Walker next = with_apex(at, apex, replaced);
     next.exit = EXIT_REPLACING(scene, exits, at.rotation, replaced);

@@ -172,7 +172,9 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, WalkStart first
     }
     if (at.steps == 0u) return make_no_hit(NO_HIT, NO_TET, 0u);
     uint tet = record_across(at.before) >> 2u;
-    if (at.exit == NO_HALF_FACE || (DEFERS_TIES && at.exit == EXIT_AT_TIE))
+    uint deferred =
+        DEFERS_TIES ? EXIT_AT_TIE : NO_HALF_FACE; // no constant operand of ||, of which PoCL's compiler warns
+    if (at.exit == NO_HALF_FACE || at.exit == deferred)
         return make_no_hit(at.exit == NO_HALF_FACE ? NO_HIT : DEFERRED, tet, at.steps);
     if ((at.exit & 3u) == EXIT_END) return hit_on(scene, ray, record_across(at.exit), tet, at.steps, end);
     return make_no_hit(!is_endless && at.steps < params.max_steps ? NO_HIT : LOST, tet, at.steps);

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <string_view>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -34,6 +35,7 @@ protected:
         pointers.push_back(nullptr);
         const pid_t child = ::fork();
         if (child != 0) return child;
+        ::signal(SIGINT, SIG_DFL); // a shell's background jobs ignore it, and so would the program
         ::setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1);
         if (killed_at > 0) {
             ::setenv("LD_PRELOAD", TETRACE_KILLING_SYNC, 1);
@@ -80,11 +82,11 @@ protected:
 };
 
 /// The one of that id. Throws std::runtime_error without one.
-inline const nlohmann::json& of_id(const nlohmann::json& list, const std::string& id)
+inline const nlohmann::json& of_id(const nlohmann::json& list, std::string_view id)
 {
     for (const nlohmann::json& one : list)
         if (one.at("id") == id) return one;
-    throw std::runtime_error("nothing of id " + id);
+    throw std::runtime_error("nothing of id " + std::string(id));
 }
 
 } // namespace tetrace::test

@@ -44,7 +44,8 @@ TEST_F(RivalsRun, the_page_has_claims_scenes_and_rows_and_its_result_shows_it_ag
 TEST_F(RivalsRun, a_layout_left_out_makes_no_claim_hold)
 {
     ASSERT_EQ(run(small + "--layout half32,bvh2 --out page.json").code, 0);
-    for (const nlohmann::json& claim : of_id(result("page.json").at("tables"), "rivals").at("claims"))
+    const nlohmann::json page = result("page.json");
+    for (const nlohmann::json& claim : of_id(page.at("tables"), "rivals").at("claims"))
         EXPECT_NE(claim.at("verdict"), "holds") << claim.at("id");
 }
 

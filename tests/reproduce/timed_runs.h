@@ -5,6 +5,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tetrace::test {
@@ -61,11 +62,11 @@ inline void set_all(SceneRun& run, double cdt, double bvh)
         if (is_whole(run.rows[i])) set_times(run, i, ramp(is_cdt(run.rows[i]) ? cdt : bvh));
 }
 
-inline const Claim& claim_of(const PaperTable& table, const std::string& id)
+inline const Claim& claim_of(const PaperTable& table, std::string_view id)
 {
     for (const Claim& claim : table.claims)
         if (claim.id == id) return claim;
-    throw std::runtime_error("no claim " + id);
+    throw std::runtime_error("no claim " + std::string(id));
 }
 
 /// From here on the run passes for one of the paper's scene, of the given similarity.
