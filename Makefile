@@ -7,13 +7,14 @@ first_layouts = half32,bvh2
 # QUICK=1: one scene, small images, under a minute once all is built.
 scenes = $(if $(QUICK),--scene bunny)
 
-.PHONY: help bench first test sanitize sanitize-threads fuzz build bundle deb cluster-test format lint clean
+.PHONY: help bench first test test-all sanitize sanitize-threads fuzz build bundle deb cluster-test format lint clean
 
 help:
 	@echo "make bench    install what is missing, build, run the main job; table, JSON, page, pictures (build/bench/);"
 	@echo "              QUICK=1: only bunny, in small images"
 	@echo "make first    the part of make bench that comes first on a new machine: a small table within minutes"
-	@echo "make test     install what is missing, build, run all tests"
+	@echo "make test     install what is missing, build, run the tests; WERROR=1: a compiler's warning is an error"
+	@echo "make test-all the same with the long campaigns: every target of inspect, the whole bundle, random kills"
 	@echo "make sanitize the small tests once more, under AddressSanitizer and UndefinedBehaviorSanitizer, then make fuzz;"
 	@echo "              ROOMS=core,scenes: only the tests of these folders of tests/"
 	@echo "make sanitize-threads  the tests of what has threads that share data, under ThreadSanitizer (clang)"
@@ -66,19 +67,20 @@ cluster-test: build
 	@scripts/install-packages cluster
 	scripts/cluster-test $(TETRACE) build/cluster
 
-test:
+# One test more than processors at a time: some wait for a limit to pass.
+test test-all:
 	@scripts/install-packages build test
-	cmake --preset release -G Ninja -DBUILD_TESTING=ON
+	cmake --preset release -G Ninja -DBUILD_TESTING=ON -DCMAKE_COMPILE_WARNING_AS_ERROR=$(if $(WERROR),ON,OFF)
 	cmake --build --preset release -j $(JOBS)
-	ctest --preset release -j $(JOBS) --output-log build/release/test.log
-	@echo "== release"; grep -A 1000 '% tests passed' build/release/test.log
+	ctest --preset release -j $$(($(JOBS) + 1)) $(if $(filter test,$@),-LE '^campaign$$') --output-log build/release/test.log; \
+	    status=$$?; echo "== release"; scripts/test-summary build/release; exit $$status
 
 sanitize:
 	@scripts/install-packages build test
 	cmake --preset asan -G Ninja -DBUILD_TESTING=ON
 	cmake --build --preset asan -j $(JOBS) --target $(if $(ROOMS),$(patsubst %,small_tests_%,$(subst $(comma), ,$(ROOMS))),small_tests)
-	ctest --preset asan -j $(JOBS) -L '$(if $(ROOMS),^small-($(subst $(comma),|,$(ROOMS)))$$,small)' --output-log build/asan/test.log
-	@echo "== asan"; grep -A 1000 '% tests passed' build/asan/test.log
+	ctest --preset asan -j $(JOBS) -L '$(if $(ROOMS),^small-($(subst $(comma),|,$(ROOMS)))$$,small)' --output-log build/asan/test.log; \
+	    status=$$?; echo "== asan"; scripts/test-summary build/asan; exit $$status
 	$(if $(ROOMS),,$(MAKE) fuzz)
 
 sanitize-threads:
@@ -87,8 +89,8 @@ sanitize-threads:
 	cmake --build --preset tsan -j $(JOBS) --target threaded_tests
 	archer=$$(ls /usr/lib/llvm-*/lib/libarcher.so | tail -n 1); test -n "$$archer" && \
 	    TSAN_OPTIONS=ignore_noninstrumented_modules=1 OMP_NUM_THREADS=4 OMP_TOOL_LIBRARIES=$$archer \
-	    ctest --preset tsan -j $(JOBS) -L '^threads-' --output-log build/tsan/test.log
-	@echo "== tsan"; grep -A 1000 '% tests passed' build/tsan/test.log
+	    ctest --preset tsan -j $(JOBS) -L '^threads-' --output-log build/tsan/test.log; \
+	    status=$$?; echo "== tsan"; scripts/test-summary build/tsan; exit $$status
 
 fuzz:
 	@scripts/install-packages build test clang

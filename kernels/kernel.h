@@ -9,7 +9,7 @@
 // TETS_IN_PARTS, QUADS_COST_AS_WORDS              host, texel scene view       scene views, tet80.h
 // STACK_TOP, STACK_ENTRIES, GROUP_ITEMS           host or entry file           stack.h, dialects
 // DEFERS_TIES                                     entry file                   entry_on_path.h, walk_*.h
-// KEEP_BRANCH, RARE_FN, PRECISE, HAS_FLOAT4, ...  dialect                      walk_by_records.h, bvh/
+// KEEP_BRANCH, MAYBE_UNUSED, PRECISE, ...         dialect                      walk_by_records.h, bvh/
 // HOST_SSE2                                       openmp/kernel.cpp            bvh/
 // LANES_VOTE                                      dialect_cuda.h               structure_bvh.h, cwbvh.h
 // HAS_RECORDS, RECORD_EXITS, RecordExits          half32.h, tet64.h            structure_cdt.h, walk_by_records.h

@@ -155,9 +155,9 @@ std::string finding(const Report& report)
 Error failure(const std::string& doing, const Ending& ending, const Report& report, double wall_s)
 {
     const bool remedy_needed = !ending.builder_knows || report.errors.empty();
-    return {ending.kind,
-            fmt::format("{}: {}{} (last stage: {}, {:.1f} s){}{}", doing, ending.what, finding(report), report.stage,
-                        wall_s, remedy_needed ? "; " : "", remedy_needed ? ending.remedy : "")};
+    return {ending.kind, fmt::format("{}: {}{} (last stage: {}{}){}{}", doing, ending.what, finding(report),
+                                     report.stage, wall_s < 1 ? "" : fmt::format(", {:.1f} s", wall_s),
+                                     remedy_needed ? "; " : "", remedy_needed ? ending.remedy : "")};
 }
 
 [[noreturn]] void fail_without_builder(const std::string& label)

@@ -4,6 +4,7 @@
 #include "core/base/stopwatch.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <vector>
 
 namespace tetrace {
@@ -17,16 +18,23 @@ constexpr unsigned max_times = 4096;
 constexpr double patient_s = 0.3;
 constexpr int max_passes = 6;
 
+/// TETRACE_QUICK_COPIES, which only tests set, limits the copies to 1 MiB and one pass: most tests do not look at the
+/// bandwidth, and measuring it well takes a second of each run.
+bool is_quick()
+{
+    return std::getenv("TETRACE_QUICK_COPIES") != nullptr;
+}
+
 /// The best of several passes; the first, which may touch pages, does not count.
 CopyRate rate_of(std::uint64_t bytes, const CopyTask& copy)
 {
     // On a busy machine a thread that waits for its turn may take as long as a pass should.
-    auto times = static_cast<unsigned>(std::clamp<std::uint64_t>(enough_bytes / bytes, 1, max_times));
+    auto times = is_quick() ? 1u : static_cast<unsigned>(std::clamp<std::uint64_t>(enough_bytes / bytes, 1, max_times));
     for (double seconds = copy(bytes, times); seconds < enough_s && times < max_times; seconds = copy(bytes, times))
         times *= 2;
     const Stopwatch watch;
     double best_s = copy(bytes, times);
-    for (int pass = 1; pass < max_passes && watch.seconds() < patient_s; ++pass)
+    for (int pass = 1; pass < (is_quick() ? 1 : max_passes) && watch.seconds() < patient_s; ++pass)
         best_s = std::min(best_s, copy(bytes, times));
     return {2 * bytes, best_s > 0 ? 2.0 * static_cast<double>(bytes) * times / best_s : 0};
 }
@@ -43,7 +51,7 @@ double Yardstick::copy_bytes_per_s_of(std::uint64_t bytes) const
 
 std::uint64_t copied_bytes(std::uint64_t memory_bytes, std::uint64_t max_buffer_bytes)
 {
-    std::uint64_t bytes = std::min(512 * mebibyte, memory_bytes / 8);
+    std::uint64_t bytes = std::min((is_quick() ? 1 : 512) * mebibyte, memory_bytes / 8);
     if (max_buffer_bytes != 0) bytes = std::min(bytes, max_buffer_bytes);
     return bytes & ~std::uint64_t{3};
 }

@@ -4,6 +4,7 @@
 #include "tests/support/program_fixture.h"
 
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 
 namespace tetrace::test {
@@ -13,14 +14,23 @@ class MergeTest : public ProgramTest {
 protected:
     using Json = nlohmann::json;
 
-    /// Runs shards 1 to n of the command into 1.json, 2.json and so on; the names of these files.
+    /// The results of shards 1 to n of the command, with their journals, in 1.json, 2.json and so on; the names of
+    /// these files. A shard runs once for all tests of a process that want the same.
     std::string shards(const std::string& command, unsigned n)
     {
+        static std::map<std::string, std::pair<std::string, std::string>> made; // result and journal
         std::string files;
         for (unsigned number = 1; number <= n; ++number) {
-            const Ended ended = run(fmt::format("{} --shard {}/{} --out {}.json", command, number, n, number));
-            EXPECT_EQ(ended.code, 0) << ended.errors;
-            files += fmt::format("{}.json ", number);
+            const std::string name = fmt::format("{}.json", number);
+            auto& [result, journal] = made[fmt::format("{} {}/{}", command, number, n)];
+            if (result.empty()) {
+                const Ended ended = run(fmt::format("{} --shard {}/{} --out {}", command, number, n, name));
+                EXPECT_EQ(ended.code, 0) << ended.errors;
+                result = file(name.c_str()), journal = file((name + ".journal").c_str());
+            }
+            write_file(folder_ / name, result);
+            write_file(folder_ / (name + ".journal"), journal);
+            files += name + " ";
         }
         return files;
     }

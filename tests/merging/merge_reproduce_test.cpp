@@ -46,7 +46,7 @@ TEST_F(MergeReproduce, table4_by_four_shards_is_that_of_the_whole_run_in_every_c
 TEST_F(MergeReproduce, shards_of_searches_have_other_batches_and_merge_to_all)
 {
     const std::string command =
-        "reproduce table5 --searches 60x64 --layout tet80 --samples 3 --backend openmp --threads 1";
+        "reproduce table5 --searches 60x64 --layout tet80 --samples 3 --sample-time 0 --backend openmp --threads 1";
     ASSERT_EQ(run(command + " --out whole.json").code, 0);
     ASSERT_EQ(run("merge " + shards(command, 3) + "--out all.json").code, 0);
     const Json whole = section("whole.json")["searches"], all = section("all.json")["searches"];
@@ -59,7 +59,7 @@ TEST_F(MergeReproduce, shards_of_searches_have_other_batches_and_merge_to_all)
 TEST_F(MergeReproduce, rows_of_several_machines_keep_counts_and_lose_rates)
 {
     const std::string command = "reproduce table3,table6 --layout tet80,bvh2 --method maria --size 16 --samples 3 "
-                                "--views 0-1281:200" +
+                                "--sample-time 0.001 --views 0-1281:200" +
                                 scene;
     ASSERT_EQ(run(command + " --out whole.json").code, 0);
     const std::string files = shards(command, 2);
@@ -80,7 +80,7 @@ TEST_F(MergeReproduce, rows_of_several_machines_keep_counts_and_lose_rates)
 TEST_F(MergeReproduce, a_scene_with_fewer_views_than_shards_is_in_some_of_them)
 {
     const std::string command = "reproduce table4,table5 --layout tet80 --method maria --size 16 --views 0,700 "
-                                "--searches 40x8 --samples 3" +
+                                "--searches 40x8 --samples 3 --sample-time 0" +
                                 scene;
     ASSERT_EQ(run(command + " --out whole.json").code, 0);
     const Ended ended = run("merge " + shards(command, 3) + "--out all.json");

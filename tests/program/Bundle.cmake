@@ -15,11 +15,11 @@ if(TARGET bundle)
   if(TARGET tetrace_stub_cuda)
     set(stub $<TARGET_FILE_DIR:tetrace_stub_cuda>)
   endif()
-  foreach(claim brings_every_library_but_the_systems states_licences_and_the_c_library
+  foreach(claim brings_every_library_but_the_systems states_licences_and_the_c_library traces_without_this_systems_drivers
       runs_all_steps_without_this_systems_drivers)
     add_test(NAME Bundle.${claim}
       COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/bundle_test.sh ${claim} ${CMAKE_BINARY_DIR}/bundle "${stub}")
     set_tests_properties(Bundle.${claim} PROPERTIES FIXTURES_REQUIRED bundle LABELS large TIMEOUT 600)
   endforeach()
-  set_tests_properties(Bundle.runs_all_steps_without_this_systems_drivers PROPERTIES PROCESSORS 2)
+  set_tests_properties(Bundle.runs_all_steps_without_this_systems_drivers PROPERTIES PROCESSORS 2 LABELS "large;campaign")
 endif()

@@ -10,7 +10,7 @@ fail() { echo "FAILED: $*"; exit 1; }
 # drivers of this system.
 cp -r "$bundle" "$folder/the bundle" || fail "copying $bundle"
 bare() {
-    env -i PATH=/usr/bin:/bin LD_LIBRARY_PATH="$stub" OCL_ICD_VENDORS="$folder/none" \
+    env -i PATH=/usr/bin:/bin OMP_WAIT_POLICY=passive TETRACE_QUICK_COPIES=1 LD_LIBRARY_PATH="$stub" OCL_ICD_VENDORS="$folder/none" \
         VK_DRIVER_FILES="$folder/none.json" VK_ICD_FILENAMES="$folder/none.json" "$@"
 }
 
@@ -34,6 +34,10 @@ states_licences_and_the_c_library)
         package=$(dpkg-query -S "$real" "${real#/usr}" 2>/dev/null | head -n 1 | cut -d: -f1)
         [ -z "$package" ] || [ -s "$bundle/licences/$package" ] || fail "no licence of $package, which $library is of"
     done ;;
+traces_without_this_systems_drivers)
+    bare "$folder/the bundle/bin/tetrace" check --scene cubes --resolution 4 --size 16 --backend openmp,embree \
+        ${stub:+--backend cuda} --out "$folder/check.json" || fail "check ended with $?"
+    bare "$folder/the bundle/bin/tetrace" render --scene cubes --views 0 --size 16 --out "$folder/picture.ppm" || fail "no picture" ;;
 runs_all_steps_without_this_systems_drivers)
     bare "$folder/the bundle/run-all" "$folder/out" --quick --patience 6 || {
         tail -n 20 "$folder"/out/*.log

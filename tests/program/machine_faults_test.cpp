@@ -45,17 +45,6 @@ protected:
         return false;
     }
 
-    /// Waits until a run has done some work.
-    void wait_for_journal(pid_t child) const
-    {
-        while (!std::filesystem::exists(folder_ / "r.json.journal") || lines("r.json.journal") < 3) {
-            siginfo_t ended{};
-            ASSERT_EQ(::waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOHANG | WNOWAIT), 0);
-            ASSERT_EQ(ended.si_pid, 0) << "it has ended by itself";
-            ::usleep(1000);
-        }
-    }
-
     std::string table4_ = "table4 --method maria,ms06 --layout tet80 --size 32 --views 0-1281:160 --out ";
 };
 
@@ -98,13 +87,10 @@ TEST_F(MachineFaults, disk_that_fails_at_the_result_leaves_the_one_before_it)
 
 TEST_F(MachineFaults, signal_that_ends_a_run_costs_only_what_was_not_finished)
 {
-    const std::string arguments = "table4 --method maria --layout tet80 --size 128 --views 0-1281:20 --out ";
+    const std::string arguments = "table4 --method maria --layout tet80 --size 32 --views 0-1281:160 --out ";
     ASSERT_EQ(run(arguments + "whole.json").code, 0);
     for (const int signal : {SIGTERM, SIGINT}) {
-        const pid_t child = start(arguments + "r.json");
-        wait_for_journal(child);
-        ::kill(child, signal);
-        const Ended ended = end(child);
+        const Ended ended = end(start(arguments + "r.json", 3, signal));
         EXPECT_EQ(ended.code, 130) << ended.errors;
         EXPECT_TRUE(contains(read_text(folder_ / "r.json"), "\"interrupted\":true"));
         EXPECT_EQ(run(arguments + "r.json --resume").code, 0);
@@ -116,10 +102,11 @@ TEST_F(MachineFaults, signal_that_ends_a_run_costs_only_what_was_not_finished)
 
 TEST_F(MachineFaults, second_run_of_a_journal_is_refused_and_the_first_goes_on)
 {
-    const std::string arguments = "table4 --method maria --layout tet80 --size 128 --views 0-1281:20 --out r.json";
-    const pid_t first = start(arguments);
-    wait_for_journal(first);
-    ::kill(first, SIGSTOP);
+    const std::string arguments = "table4 --method maria --layout tet80 --size 32 --views 0-1281:160 --out r.json";
+    const pid_t first = start(arguments, 3, SIGSTOP);
+    siginfo_t stopped{};
+    ASSERT_EQ(::waitid(P_PID, static_cast<id_t>(first), &stopped, WSTOPPED | WEXITED | WNOWAIT), 0);
+    ASSERT_EQ(stopped.si_code, CLD_STOPPED);
     const Ended second = run(arguments + " --resume");
     ::kill(first, SIGCONT);
     EXPECT_EQ(second.code, 2);

@@ -36,8 +36,10 @@ steps_that_end_well_give_0)
     summary_has '^0 steps failed'
     [ ! -e "$out/.work" ] || fail "its working folder is left over" ;;
 a_hang_and_a_failure_lose_no_other_step)
-    tetrace_is 'case $1 in
-        check) echo partly; trap "" TERM; while :; do sleep 1; done ;;
+    tetrace_is 'case "$*" in
+        check*--junit*) echo partly; trap "" TERM; while :; do sleep 1; done ;; # the step "check" alone: it costs 12 s
+        esac
+        case $1 in
         bench) echo "reason" >&2; exit 1 ;;
         render) kill -SEGV $$ ;;
         esac'

@@ -3,6 +3,7 @@
 #include "core/device/yardstick.h"
 #include "tests/support/fake_backend.h"
 #include "tests/support/row_runs.h"
+#include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -88,6 +89,7 @@ TEST(RowDevices, a_row_s_ceiling_is_that_of_the_level_that_holds_its_scene)
 TEST(Yardstick, copies_at_sizes_from_caches_to_memory_and_each_long_enough)
 {
     constexpr std::uint64_t mebibyte = std::uint64_t{1} << 20;
+    const ScopedVariable none("TETRACE_QUICK_COPIES", static_cast<const char*>(nullptr));
     // 100 GB/s from a cache of 20 MiB, 10 GB/s outside it, and a microsecond for each copy.
     const Yardstick measured = measure_copies(512 * mebibyte, [](std::uint64_t bytes, unsigned times) {
         return times * (1e-6 + 2.0 * static_cast<double>(bytes) / (2 * bytes > 20 * mebibyte ? 10e9 : 100e9));
@@ -103,6 +105,8 @@ TEST(Yardstick, copies_at_sizes_from_caches_to_memory_and_each_long_enough)
     EXPECT_EQ(copied_bytes(std::uint64_t{80} << 30, 0), 512 * mebibyte);
     EXPECT_EQ(copied_bytes(std::uint64_t{2} << 30, 0), 256 * mebibyte);
     EXPECT_EQ(copied_bytes(std::uint64_t{80} << 30, 1023), 1020u);
+    const ScopedVariable quick("TETRACE_QUICK_COPIES", "1");
+    EXPECT_EQ(copied_bytes(std::uint64_t{80} << 30, 0), mebibyte);
 }
 
 TEST(RowDevices, an_api_on_the_host_without_a_yardstick_has_openmps_and_one_on_a_gpu_none)

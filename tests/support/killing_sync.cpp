@@ -1,6 +1,6 @@
 // For LD_PRELOAD: kills the process at the end of its fdatasync() of the number TETRACE_KILLED_AT_SYNC, or sends it the
-// signal of the number TETRACE_SYNC_SIGNAL in place of SIGKILL. The journal is
-// all that tetrace writes so, an entry a call, so that a run is killed with that many lines, however busy the machine.
+// signal of the number TETRACE_SYNC_SIGNAL instead. Only the journal is written so, one entry per call: the run gets
+// the signal with that many lines, however busy the machine.
 #include <csignal>
 #include <cstdlib>
 #include <sys/syscall.h>

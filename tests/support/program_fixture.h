@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <fmt/format.h>
+#include <map>
 #include <string>
 #include <sys/wait.h>
 
@@ -37,6 +38,21 @@ protected:
         // Not on this machine's GPU interfaces, whose number nobody knows.
         return run("bench --backend openmp,embree --scene cubes --resolution 6 --size 24 --samples 3 --sample-time 0 " +
                    arguments);
+    }
+
+    /// Puts the result of bench(arguments) into the folder under a name. The program measures once for all tests of a
+    /// process that want the same: for tests of what is done with a result.
+    void have_measured(const std::string& name, const std::string& arguments = {})
+    {
+        static std::map<std::string, std::string> results;
+        std::string& result = results[arguments];
+        if (result.empty()) {
+            const Ended ended = bench(arguments + " --out measured.json");
+            ASSERT_EQ(ended.code, 0) << ended.errors;
+            result = file("measured.json");
+            std::filesystem::remove(folder_ / "measured.json");
+        }
+        write_file(folder_ / name, result);
     }
 
     [[nodiscard]] std::string file(const char* name) const { return read_text(folder_.path() / name); }
