@@ -34,7 +34,7 @@ build:
 	cmake --build --preset release -j $(JOBS)
 
 # A row in error, of a driver that crashes, is in the page too: exit code 1 comes last.
-# On a new machine there is a first table before that is compiled which it does not need: other verbs and kernels.
+# On a new machine there is a first table before all else is installed and compiled.
 bench:
 	@[ -e $(TETRACE) ] || $(MAKE) first || echo "The first table failed; going on."
 	@$(MAKE) build
@@ -47,12 +47,13 @@ bench:
 	    echo "Page: build/bench/report.html; result: build/bench/result.json (its schema: results/README.md)" && \
 	    exit $$status
 
+# Fewer packages and fewer kernels: without glTF and pictures, for which OpenImageIO brings 200 packages.
 first:
-	@scripts/install-packages build
+	@scripts/install-packages first
 	cmake --preset release -G Ninja -DBUILD_TESTING=OFF -DTETRACE_COMPILES=$(first_layouts)
-	cmake --build --preset release -j $(JOBS) --target tetrace-first
+	cmake --build --preset release -j $(JOBS)
 	@echo "A first table, of one scene in small images. Then the rest is built, and all of it measured."
-	build/release/bin/tetrace-first bench --scene bunny --layout $(first_layouts),embree,embree_medium,embree_robust --size 256 --samples 7 --budget 40s
+	$(TETRACE) bench --scene bunny --layout $(first_layouts),embree,embree_medium,embree_robust --size 256 --samples 7 --budget 40s
 
 bundle: build
 	cmake --preset release -DTETRACE_CUDA_CODE=all
@@ -60,6 +61,8 @@ bundle: build
 
 deb: build
 	@scripts/install-packages package
+	cmake --preset release -DTETRACE_CUDA_CODE=all
+	cmake --build --preset release -j $(JOBS)
 	cd build/release && cpack
 	@ls build/release/*.deb
 
@@ -70,7 +73,7 @@ cluster-test: build
 # One test more than processors at a time: some wait for a limit to pass.
 test test-all:
 	@scripts/install-packages build test
-	cmake --preset release -G Ninja -DBUILD_TESTING=ON -DCMAKE_COMPILE_WARNING_AS_ERROR=$(if $(WERROR),ON,OFF)
+	cmake --preset release -G Ninja -DBUILD_TESTING=ON $(if $(filter test-all,$@),-DTETRACE_CUDA_CODE=all) -DCMAKE_COMPILE_WARNING_AS_ERROR=$(if $(WERROR),ON,OFF)
 	cmake --build --preset release -j $(JOBS)
 	ctest --preset release -j $$(($(JOBS) + 1)) $(if $(filter test,$@),-LE '^campaign$$') --output-log build/release/test.log; \
 	    status=$$?; echo "== release"; scripts/test-summary build/release; exit $$status

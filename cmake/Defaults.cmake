@@ -37,18 +37,16 @@ if(TETRACE_SANITIZE_THREADS)
   target_link_options(tetrace_options INTERFACE -fsanitize=thread)
 endif()
 
-# tetrace_room(<target> <sources>...): adds a folder's sources; a unity build, of mode GROUP, compiles them with those of
-# the other rooms of TETRACE_WING: what all of them include takes longer than what each has of its own. A wing takes
-# gcc 12 less than 30 s.
-function(tetrace_room target)
-  target_sources(${target} PRIVATE ${ARGN})
-  set_source_files_properties(${ARGN} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${TETRACE_WING})
-endfunction()
-
-# tetrace_wing(<name> <room>...): adds the rooms of one wing.
-macro(tetrace_wing name)
-  set(TETRACE_WING ${name})
-  foreach(room ${ARGN})
-    add_subdirectory(${room})
+# tetrace_folders(<target> <folder>... [WITHOUT <source>...]): adds the sources of these folders. A unity build compiles a
+# folder, with its subfolders, at once: what all of them include takes longer than what each has of its own.
+function(tetrace_folders target)
+  cmake_parse_arguments(PARSE_ARGV 1 given "" "" WITHOUT)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+  foreach(folder IN LISTS given_UNPARSED_ARGUMENTS)
+    file(GLOB sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} ${folder}/*.cpp)
+    list(REMOVE_ITEM sources ${given_WITHOUT})
+    string(REGEX REPLACE "/.*" "" group ${folder})
+    target_sources(${target} PRIVATE ${sources})
+    set_source_files_properties(${sources} PROPERTIES UNITY_GROUP ${group})
   endforeach()
-endmacro()
+endfunction()

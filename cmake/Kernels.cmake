@@ -1,12 +1,12 @@
 # Kernels that devices get as text or code: the list of them, each flattened into one text, and embedded into the
 # program.
 
-set(TETRACE_COMPILES all CACHE STRING "What is compiled: 'all', or, for a first table soon, layouts with commas: their \
-default kernels alone, in exact mode, and a scene builder without glTF and repair; tetrace says what is missing")
+set(TETRACE_COMPILES all CACHE STRING "Which kernels are compiled: 'all', or, for a first table soon, layouts with commas: \
+only their default kernels, in exact mode; tetrace says what is missing")
 set_property(CACHE TETRACE_COMPILES PROPERTY STRINGS all half32,bvh2)
 set(TETRACE_MATH_MODES exact fast)
 if(NOT TETRACE_COMPILES STREQUAL "all")
-  message(STATUS "Kernels: the default ones of ${TETRACE_COMPILES} alone (TETRACE_COMPILES)")
+  message(STATUS "Kernels: only the default ones of ${TETRACE_COMPILES} (TETRACE_COMPILES)")
   set(TETRACE_MATH_MODES exact)
 endif()
 
@@ -161,7 +161,7 @@ endfunction()
 function(tetrace_embed output namespace)
   set(files ${ARGN})
   list(TRANSFORM files REPLACE "^[^=]*=" "")
-  add_custom_command(OUTPUT ${output}
+  add_custom_command(OUTPUT ${output} BYPRODUCTS ${output}.xz
     COMMAND ${CMAKE_COMMAND} -DOUTPUT=${output} -DNAMESPACE=${namespace} -DXZ=${TETRACE_XZ} "-DFILES=${ARGN}"
             -P ${tetrace_kernels_scripts}/embed.cmake
     DEPENDS ${files} ${tetrace_kernels_scripts}/embed.cmake

@@ -1,5 +1,6 @@
 # Script of tetrace_embed(), see Kernels.cmake: -DOUTPUT -DNAMESPACE -DXZ -DFILES=<name>=<file>;...
-# One stream for all: kernels are similar, and separate streams would be five times as long in total.
+# One stream for all: kernels are similar, and separate streams would be five times as long in total. The assembler reads
+# it; its symbol is local, as there are several such sources.
 set(files "")
 set(rows "")
 foreach(entry IN LISTS FILES)
@@ -8,27 +9,22 @@ foreach(entry IN LISTS FILES)
   file(SIZE "${CMAKE_MATCH_2}" length)
   string(APPEND rows "        {\"${CMAKE_MATCH_1}\", ${length}},\n")
 endforeach()
-execute_process(COMMAND ${CMAKE_COMMAND} -E cat ${files} OUTPUT_FILE ${OUTPUT}.all COMMAND_ERROR_IS_FATAL ANY)
-execute_process(COMMAND ${XZ} --lzma2=preset=9e,dict=8MiB --stdout ${OUTPUT}.all OUTPUT_FILE ${OUTPUT}.xz COMMAND_ERROR_IS_FATAL ANY)
-file(READ ${OUTPUT}.xz hex HEX)
-string(REGEX REPLACE "(................................)" "\\1\n" hex "${hex}")
-string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," hex "${hex}")
-file(REMOVE ${OUTPUT}.all ${OUTPUT}.xz)
+execute_process(COMMAND ${CMAKE_COMMAND} -E cat ${files} COMMAND ${XZ} --lzma2=preset=9e,dict=8MiB --stdout
+  OUTPUT_FILE ${OUTPUT}.xz COMMAND_ERROR_IS_FATAL ANY)
+file(SIZE ${OUTPUT}.xz length)
 file(WRITE ${OUTPUT} "// Written by CMake, see cmake/Kernels.cmake.
 #include \"backends/embedded.h\"
 
-namespace ${NAMESPACE} {
+asm(\".pushsection .rodata\\nembedded_stream: .incbin \\\"${OUTPUT}.xz\\\"\\n.popsection\");
+extern \"C\" __attribute__((visibility(\"hidden\"))) const unsigned char embedded_stream[${length}];
 
-namespace {
-constexpr unsigned char stream[] = {
-${hex}};
-} // namespace
+namespace ${NAMESPACE} {
 
 std::span<const tetrace::EmbeddedKernel> embedded_kernels()
 {
     static constexpr tetrace::PackedKernel packed[] = {
 ${rows}    };
-    static const tetrace::UnpackedKernels kernels(packed, stream);
+    static const tetrace::UnpackedKernels kernels(packed, embedded_stream);
     return kernels.list();
 }
 

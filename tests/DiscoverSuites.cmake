@@ -1,28 +1,50 @@
-# Writes a file of ctest tests, one for each test suite of a program:
-# cmake -DUNIT= -DPROGRAM= -DOUTPUT= -DFILTER= -DLABEL= -DCAMPAIGNS= -DPROPERTIES= -P DiscoverSuites.cmake
+# Writes a file of ctest tests, one for each suite of a program, named <source>.<suite>:
+# cmake -DPROGRAM= -DOUTPUT= -DROOM= -DLARGE= -DTHREADED= -DCAMPAIGNS= -DCASES= -DENVIRONMENT= -P DiscoverSuites.cmake
 # A suite is one process: its cases share what the first of them made, and there are 300 program starts, not 2,000.
-# FILTER: gtest's; with one, the program is one test. CAMPAIGNS: the tests that have the label campaign, too. PROPERTIES:
-# ctest's, as set_tests_properties() takes them.
+# LARGE, THREADED: sources, for the labels. CAMPAIGNS: tests that get that label too. CASES: <source>=<filter of gtest>:
+# those of its cases that run. ENVIRONMENT: as in ENVIRONMENT_MODIFICATION.
 cmake_minimum_required(VERSION 3.25)
+execute_process(COMMAND "${PROGRAM}" --gtest_list_tests "--gtest_output=json:${OUTPUT}.json" OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+file(READ "${OUTPUT}.json" listed)
+string(JSON count LENGTH "${listed}" testsuites)
+math(EXPR last "${count} - 1")
 set(tests "")
-function(add_suite name filter)
-  set(labels ${LABEL})
-  if(name IN_LIST CAMPAIGNS)
-    list(APPEND labels campaign)
+foreach(index RANGE ${last})
+  string(JSON one GET "${listed}" testsuites ${index})
+  string(JSON suite GET "${one}" name)
+  string(JSON source GET "${one}" testsuite 0 file)
+  string(REGEX REPLACE ".*/|_test\\.cpp$" "" source "${source}")
+  set(cost 0)
+  if(source IN_LIST THREADED)
+    set(label threads-${ROOM})
+  elseif(source IN_LIST LARGE)
+    set(label large-${ROOM})
+    set(cost 10) # first, so that none of them is the last that runs
+  else()
+    set(label small-${ROOM})
   endif()
-  string(APPEND tests "add_test([=[${name}]=] [=[${PROGRAM}]=] [=[--gtest_filter=${filter}]=])\n"
-    "set_tests_properties([=[${name}]=] PROPERTIES ${PROPERTIES} LABELS [=[${labels}]=])\n")
-  set(tests ${tests} PARENT_SCOPE)
-endfunction()
-
-if(FILTER STREQUAL "*")
-  execute_process(COMMAND "${PROGRAM}" --gtest_list_tests OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY)
-  string(REGEX MATCHALL "(^|\n)[^ \n][^\n]*\\.( |\n)" suites "${listed}")
-  foreach(suite IN LISTS suites)
-    string(REGEX REPLACE "^\n?(.*)\\.[ \n]$" "\\1" suite "${suite}")
-    add_suite("${UNIT}.${suite}" "${suite}.*")
+  if("${source}.${suite}" IN_LIST CAMPAIGNS)
+    list(APPEND label campaign)
+  endif()
+  set(filter "${suite}.*")
+  foreach(entry IN LISTS CASES)
+    if(entry MATCHES "^${source}=([^-]*)(-.*)?$")
+      set(excluded "${CMAKE_MATCH_2}")
+      set(filter "")
+      string(REPLACE ":" ";" patterns "${CMAKE_MATCH_1}")
+      foreach(pattern IN LISTS patterns)
+        string(REPLACE "*" ".*" suites "${pattern}")
+        if(pattern MATCHES "^\\*")
+          string(APPEND filter ":${suite}.${pattern}")
+        elseif(suite MATCHES "^${suites}$")
+          string(APPEND filter ":${suite}.*")
+        endif()
+      endforeach()
+      string(APPEND filter "${excluded}")
+    endif()
   endforeach()
-else()
-  add_suite("${UNIT}" "${FILTER}")
-endif()
+  string(APPEND tests "add_test([=[${source}.${suite}]=] [=[${PROGRAM}]=] [=[--gtest_filter=${filter}]=])\n"
+    "set_tests_properties([=[${source}.${suite}]=] PROPERTIES TIMEOUT 600 COST ${cost} LABELS [=[${label}]=]\n"
+    "  ENVIRONMENT_MODIFICATION [=[${ENVIRONMENT}]=])\n")
+endforeach()
 file(WRITE "${OUTPUT}" "${tests}")

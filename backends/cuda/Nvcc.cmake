@@ -1,10 +1,12 @@
 # TETRACE_NVCC: nvcc, if one works here (-DTETRACE_NVCC= disables it). Sets TETRACE_NVCC_VERSION ("13.0"), empty without
-# nvcc; TETRACE_NVCC_ARCHITECTURES, for which machine code is made; TETRACE_NVCC_TARGETS, the options that compile for
+# nvcc or without a GPU to compile for; TETRACE_NVCC_ARCHITECTURES, for which machine code is made; TETRACE_NVCC_TARGETS, the options that compile for
 # them. Assembly of the newest of them goes with it: any later device's driver compiles that.
 find_program(TETRACE_NVCC nvcc HINTS ENV CUDA_PATH ENV CUDA_HOME PATH_SUFFIXES bin PATHS /usr/local/cuda/bin /opt/cuda/bin
   DOC "NVIDIA's compiler; empty: kernels are compiled by NVRTC at run time")
-set(TETRACE_CUDA_CODE here CACHE STRING "What nvcc compiles kernels for: 'here', the GPUs of this machine, or the oldest \
-architecture if it has none; 'all', one architecture a generation; or numbers, as 80;90")
+set(TETRACE_CUDA_CODE here CACHE STRING "What nvcc compiles kernels for: 'here', the GPUs of this machine, so nothing if \
+it has none; 'all', one architecture per generation; or numbers, such as 80;90")
+set(TETRACE_NVCC_VERSION "")
+set(TETRACE_NVCC_TARGETS "")
 
 # One architecture a generation: code for sm_80 also runs on sm_86 and sm_89; code for these too would double a kernel's
 # compile time and its bytes in the program.
@@ -17,11 +19,9 @@ elseif(TETRACE_CUDA_CODE STREQUAL "here")
   string(REGEX MATCHALL "[0-9]+\\.[0-9]" wanted "${gpus}")
   string(REPLACE "." "" wanted "${wanted}")
   list(REMOVE_DUPLICATES wanted)
-  if((failed OR NOT wanted) AND NOT TETRACE_COMPILES STREQUAL "all") # no row would run it
-    set(TETRACE_NVCC_VERSION "")
+  if(failed OR NOT wanted)
+    message(STATUS "CUDA kernels are not compiled: no NVIDIA GPU is here (-DTETRACE_CUDA_CODE=all compiles them for others)")
     return()
-  elseif(failed OR NOT wanted)
-    list(GET generations 0 wanted)
   endif()
 else()
   set(wanted ${TETRACE_CUDA_CODE})
@@ -62,8 +62,6 @@ if(TETRACE_NVCC AND NOT "${TETRACE_NVCC} for ${wanted}" STREQUAL "${TETRACE_NVCC
   set(TETRACE_NVCC_ARCHITECTURES "${architectures}" CACHE INTERNAL "")
 endif()
 
-set(TETRACE_NVCC_VERSION "")
-set(TETRACE_NVCC_TARGETS "")
 if(TETRACE_NVCC AND TETRACE_NVCC_ARCHITECTURES)
   set(TETRACE_NVCC_VERSION "${TETRACE_NVCC_FOUND_VERSION}")
   foreach(number IN LISTS TETRACE_NVCC_ARCHITECTURES)

@@ -119,7 +119,8 @@ std::vector<Device> list_devices(const LoadedDriver& loaded, const Programs& pro
             devices.emplace_back(printable(describe(driver, ordinal_of(driver, static_cast<std::size_t>(i)))));
         device.usable = !programs.code.empty() || programs.has_nvrtc();
         if (!device.usable)
-            device.reason = "this program was built without nvcc, so that its kernels are compiled at run time: " +
+            device.reason = "this program was built without compiled CUDA kernels (nvcc makes them for the GPUs of the "
+                            "building machine, or with -DTETRACE_CUDA_CODE=all), so NVRTC must compile them: " +
                             (programs.nvrtc != nullptr ? programs.nvrtc().reason() : "NVRTC is not used");
     }
     return devices;

@@ -13,7 +13,7 @@ using Path = std::vector<std::uint32_t>;
 
 constexpr std::uint32_t recorded_tets = 200; ///< of a device's walk, which is traced anew for each
 
-TraceJob job_of(const RowRun& row, std::uint32_t view)
+TraceJob job_of_number(const RowRun& row, std::uint32_t view)
 {
     const auto& numbers = row.scene->view_numbers();
     const auto index = static_cast<std::size_t>(std::ranges::find(numbers, view) - numbers.begin());
@@ -32,7 +32,7 @@ Path path_of(const RowRun& row, std::uint32_t view, std::uint32_t x, std::uint32
     if (row.packed == nullptr || !leaves_tets(row)) return {};
     KernelId kernel = row.key.kernel;
     kernel.schedule = Schedule::tiles;
-    return walk_path(row.packed->data, kernel, job_of(row, view), x, y);
+    return walk_path(row.packed->data, kernel, job_of_number(row, view), x, y);
 }
 
 /// The device's own walk; empty if the device can no longer trace it.
@@ -40,7 +40,7 @@ Path own_path(const RowRun& row, const DifferingRay& ray)
 {
     if (row.packed == nullptr || row.session == nullptr || !leaves_tets(row)) return {};
     try {
-        return walk_path(*row.session, job_of(row, ray.view), ray.x, ray.y, recorded_tets);
+        return walk_path(*row.session, job_of_number(row, ray.view), ray.x, ray.y, recorded_tets);
     } catch (const Error& error) {
         if (error.kind() == ErrorKind::interrupted) throw;
         return {};

@@ -68,7 +68,7 @@ std::vector<std::string> device_sentences(const ResultComparison& comparison)
 }
 
 /// A value of the section `tetrace`; null if the result has none there.
-nlohmann::json recorded(const ResultFile& file, const char* pointer)
+nlohmann::json recorded_at(const ResultFile& file, const char* pointer)
 {
     const nlohmann::json::json_pointer place(pointer);
     const nlohmann::json& section = file.json.at("tetrace");
@@ -96,7 +96,7 @@ std::string differences_text(const ResultComparison& comparison)
                               {"/packet_lanes", "the lanes of packets"}};
     std::vector<std::string> differences;
     for (const Fact& fact : facts)
-        if (recorded(*comparison.before, fact.pointer) != recorded(*comparison.after, fact.pointer))
+        if (recorded_at(*comparison.before, fact.pointer) != recorded_at(*comparison.after, fact.pointer))
             differences.emplace_back(fact.name);
     for (const ComparedRow& row : comparison.rows)
         if (row.outcome == RowOutcome::compared &&

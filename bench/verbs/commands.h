@@ -4,7 +4,6 @@
 #include "bench/options/options.h"
 #include "bench/output/bench_report.h"
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -60,17 +59,7 @@ void write_junit(const std::vector<RowRecord>& rows, const Options& options, con
 /// What a long run says where it is interrupted and keeps nothing: how to begin again. Empty for a short one.
 [[nodiscard]] std::string words_when_begun(const Options& options);
 
-/// What a program does in addition to help and version.
-struct Verbs {
-    int (*run)(const Options& options);
-    /// What the program is started for by itself, with a first word that is not a verb for users; empty for other
-    /// words.
-    std::optional<int> (*run_unlisted)(const std::vector<std::string>& arguments) = nullptr;
-};
-
-/// Runs a program on a command line without its name; prints errors; returns the exit code.
-int run_program(const std::vector<std::string>& arguments, const Verbs& verbs);
-/// The same with all verbs.
+/// Runs the program on a command line without its name; prints errors; returns the exit code.
 int run_program(const std::vector<std::string>& arguments);
 
 } // namespace tetrace

@@ -1,8 +1,10 @@
+#include "bench/inspection/null_hardware.h"
 #include "bench/measuring/run_journal.h"
 #include "bench/options/help.h"
 #include "bench/terminal/progress.h"
 #include "bench/terminal/text.h"
 #include "bench/verbs/commands.h"
+#include "bench/verbs/ranks.h"
 #include "core/base/error.h"
 #include "core/isolation/driver_server.h"
 #include "core/isolation/isolation.h"
@@ -61,21 +63,53 @@ std::string words_when_begun(const Options& options)
     return fmt::format("tetrace: interrupted; {}. To begin again: {}{}", kept, command_of(command_line()), hint);
 }
 
-int run_program(const std::vector<std::string>& arguments, const Verbs& verbs)
+namespace {
+
+int run_verb(const Options& options)
+{
+    say_when_interrupted(words_when_begun(options));
+    switch (options.verb) {
+    case Verb::devices: return devices_command(options);
+    case Verb::scenes: return scenes_command(options);
+    case Verb::build: return build_command(options);
+    case Verb::bench: return bench_command(options);
+    case Verb::check: return check_command(options);
+    case Verb::render: return render_command(options);
+    case Verb::reproduce: return reproduce_command(options);
+    case Verb::inspect: return inspect_command(options);
+    case Verb::trace: return trace_command(options);
+    case Verb::dump: return dump_command(options);
+    case Verb::compare: return compare_command(options);
+    case Verb::show: return show_command(options);
+    case Verb::report: return report_command(options);
+    case Verb::merge: return merge_command(options);
+    case Verb::help: print(help_text(options.help_topic)); return 0;
+    case Verb::version: print(version_text()); return 0;
+    }
+    throw Error(ErrorKind::internal, "run_verb: no such verb");
+}
+
+int run_verb_or_rank(const Options& options)
+{
+    const auto rank = is_shared(options) ? this_rank() : std::nullopt;
+    return rank ? run_rank(*rank, options, run_verb) : run_verb(options);
+}
+
+} // namespace
+
+int run_program(const std::vector<std::string>& arguments)
 {
     command_line() = arguments;
     std::signal(SIGXFSZ, SIG_IGN); // a file over `ulimit -f` is then an error of its write, as on a full disk
     try {
-        if (!arguments.empty() && arguments.front() == driver_verb) // started by DriverChild; no verb for users
+        // Two first words are not for users: with them the program starts itself, to load a driver.
+        if (!arguments.empty() && arguments.front() == driver_verb)
             return serve_driver({arguments.begin() + 1, arguments.end()}, direct_backends());
-        if (const auto code = verbs.run_unlisted ? verbs.run_unlisted(arguments) : std::nullopt) return *code;
+        if (!arguments.empty() && arguments.front() == null_hardware_word)
+            return run_null_hardware({arguments.begin() + 1, arguments.end()});
         const Options options = parse_options(arguments);
         set_isolation(options.isolation, options.driver_limit_s);
-        switch (options.verb) {
-        case Verb::help: print(help_text(options.help_topic)); return 0;
-        case Verb::version: print(version_text()); return 0;
-        default: return verbs.run(options);
-        }
+        return run_verb_or_rank(options);
     } catch (const Error& error) {
         say(std::string("tetrace: ") + error.what());
         const std::string words = words_when_interrupted();

@@ -125,7 +125,9 @@ unsigned packet_width(Method method)
 std::string embree_title(std::string_view method, std::string_view layout)
 {
     const std::size_t tree = layout.find('_');
-    return std::string(method) + (tree == std::string_view::npos ? "" : " " + std::string(layout.substr(tree + 1)));
+    std::string title(method);
+    if (tree != std::string_view::npos) title.append(" ").append(layout.substr(tree + 1));
+    return title;
 }
 
 bool is_compact(Layout layout)

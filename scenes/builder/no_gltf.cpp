@@ -1,6 +1,6 @@
 #include "scenes/builder/mesh_source.h"
 
-// In place of read_gltf.cpp where tinygltf is not installed, and for a first table.
+// In place of read_gltf.cpp if tinygltf is not installed.
 
 namespace tetrace {
 

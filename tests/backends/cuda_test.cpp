@@ -181,7 +181,7 @@ TEST(CudaDriver, of_a_build_without_compilers_is_listed_with_the_reason)
 {
     const auto backend = stub_backend([] { return cuda::Programs{.sources = cuda::embedded_sources()}; });
     EXPECT_FALSE(backend->devices().at(0).usable);
-    EXPECT_TRUE(contains(backend->devices()[0].reason, "without nvcc"));
+    EXPECT_TRUE(contains(backend->devices()[0].reason, "without compiled CUDA kernels"));
 }
 
 TEST_F(CudaFailures, of_memory_make_a_row_unsupported_with_both_numbers)

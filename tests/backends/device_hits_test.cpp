@@ -13,7 +13,7 @@ using namespace tetrace::test;
 
 namespace {
 
-class Devices : public EachDevice {
+class DeviceHits : public EachDevice {
 protected:
     /// A job, and its hits on the host.
     struct Expected {
@@ -47,7 +47,7 @@ protected:
 
 } // namespace
 
-TEST_P(Devices, find_openmps_hits_for_each_layout_schedule_and_tile)
+TEST_P(DeviceHits, find_openmps_hits_for_each_layout_schedule_and_tile)
 {
     for (const Layout layout : {Layout::tet80, Layout::tet96}) {
         const DeviceRays rays(make_cubes(8), layout);
@@ -62,7 +62,7 @@ TEST_P(Devices, find_openmps_hits_for_each_layout_schedule_and_tile)
     }
 }
 
-TEST_P(Devices, find_openmps_hits_of_bvhs_for_each_schedule_and_tile)
+TEST_P(DeviceHits, find_openmps_hits_of_bvhs_for_each_schedule_and_tile)
 {
     const Scene scene = make_cubes(8);
     const DeviceRays rays(scene, Layout::tet80);
@@ -83,7 +83,7 @@ TEST_P(Devices, find_openmps_hits_of_bvhs_for_each_schedule_and_tile)
     }
 }
 
-TEST_P(Devices, find_openmps_hits_with_the_tets_in_parts_or_refuse_to_cut_them)
+TEST_P(DeviceHits, find_openmps_hits_with_the_tets_in_parts_or_refuse_to_cut_them)
 {
     for (const Layout layout : {Layout::tet80, Layout::tet96}) {
         const DeviceRays rays(make_cubes(8), layout);
@@ -104,7 +104,7 @@ TEST_P(Devices, find_openmps_hits_with_the_tets_in_parts_or_refuse_to_cut_them)
     }
 }
 
-TEST_P(Devices, find_openmps_hits_for_an_image_of_many_launches)
+TEST_P(DeviceHits, find_openmps_hits_for_an_image_of_many_launches)
 {
     const DeviceRays rays(make_cubes(8), Layout::tet96);
     const auto all = expected(rays, {rays.from_outside(401, 390), rays.from_outside(401, 390, 0)});
@@ -113,7 +113,7 @@ TEST_P(Devices, find_openmps_hits_for_an_image_of_many_launches)
             expect_hits(device, {.layout = Layout::tet96, .schedule = schedule}, rays.data(), all, {.threads = 1});
 }
 
-TEST_P(Devices, find_the_same_faces_in_fast_mode_but_for_rays_on_edges)
+TEST_P(DeviceHits, find_the_same_faces_in_fast_mode_but_for_rays_on_edges)
 {
     const KernelId kernel{.math = MathMode::fast};
     const DeviceRays rays(make_cubes(8), Layout::tet80);
@@ -126,7 +126,7 @@ TEST_P(Devices, find_the_same_faces_in_fast_mode_but_for_rays_on_edges)
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(each, Devices, ::testing::ValuesIn(apis()), case_name);
+INSTANTIATE_TEST_SUITE_P(each, DeviceHits, ::testing::ValuesIn(apis()), case_name);
 
 TEST(DeviceRaysTolerances, fail_for_wrong_answers)
 {

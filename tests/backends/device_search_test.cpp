@@ -9,7 +9,7 @@ using namespace tetrace::test;
 
 namespace {
 
-class Devices : public EachDevice {};
+class DeviceSearches : public EachDevice {};
 
 /// The faces of one launch.
 std::vector<std::uint32_t> searched(Session& session, const SearchRays& rays)
@@ -30,7 +30,7 @@ std::size_t wrong_searches(const SearchRays& rays, const std::vector<std::uint32
 
 } // namespace
 
-TEST_P(Devices, find_openmps_exits_for_each_method_and_layout)
+TEST_P(DeviceSearches, find_openmps_exits_for_each_method_and_layout)
 {
     const auto first = search_rays(0, 30, 512), second = search_rays(30, 9, 200); // of another number
     for (const KernelId& kernel : kernels_of(Task::search)) {
@@ -47,7 +47,7 @@ TEST_P(Devices, find_openmps_exits_for_each_method_and_layout)
     }
 }
 
-TEST_P(Devices, search_exits_of_the_rays_that_they_were_given_last)
+TEST_P(DeviceSearches, search_exits_of_the_rays_that_they_were_given_last)
 {
     const KernelId kernel{.task = Task::search};
     const PackedScene tets = search_tets(2, kernel.layout);
@@ -61,7 +61,7 @@ TEST_P(Devices, search_exits_of_the_rays_that_they_were_given_last)
     }
 }
 
-TEST_P(Devices, refuse_rays_that_exceed_a_buffer)
+TEST_P(DeviceSearches, refuse_rays_that_exceed_a_buffer)
 {
     const KernelId kernel{.task = Task::search};
     const PackedScene tets = search_tets(1, kernel.layout);
@@ -74,4 +74,4 @@ TEST_P(Devices, refuse_rays_that_exceed_a_buffer)
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(each, Devices, ::testing::ValuesIn(apis()), case_name);
+INSTANTIATE_TEST_SUITE_P(each, DeviceSearches, ::testing::ValuesIn(apis()), case_name);

@@ -12,11 +12,11 @@ using namespace tetrace::test;
 
 namespace {
 
-class Devices : public EachDevice {};
+class DeviceSessions : public EachDevice {};
 
 } // namespace
 
-TEST_P(Devices, give_the_same_hits_when_a_job_is_launched_twice)
+TEST_P(DeviceSessions, give_the_same_hits_when_a_job_is_launched_twice)
 {
     const DeviceRays rays(make_cubes(4), Layout::tet80);
     for (const std::size_t device : usable) {
@@ -27,7 +27,7 @@ TEST_P(Devices, give_the_same_hits_when_a_job_is_launched_twice)
     }
 }
 
-TEST_P(Devices, give_the_same_hits_after_several_passes_in_either_schedule)
+TEST_P(DeviceSessions, give_the_same_hits_after_several_passes_in_either_schedule)
 {
     const DeviceRays rays(make_cubes(4), Layout::tet80);
     TraceJob job = rays.from_outside(50, 50);
@@ -43,7 +43,7 @@ TEST_P(Devices, give_the_same_hits_after_several_passes_in_either_schedule)
         }
 }
 
-TEST_P(Devices, give_the_hits_of_single_launches_to_jobs_that_are_in_flight_together)
+TEST_P(DeviceSessions, give_the_hits_of_single_launches_to_jobs_that_are_in_flight_together)
 {
     for (const Layout layout : {Layout::tet80, Layout::half32}) {
         const DeviceRays rays(make_cubes(4), layout);
@@ -69,7 +69,7 @@ TEST_P(Devices, give_the_hits_of_single_launches_to_jobs_that_are_in_flight_toge
     }
 }
 
-TEST_P(Devices, give_joined_jobs_right_hits_in_a_sessions_first_launch_and_before_anybody_waits)
+TEST_P(DeviceSessions, give_joined_jobs_right_hits_in_a_sessions_first_launch_and_before_anybody_waits)
 {
     const DeviceRays rays(make_cubes(8), Layout::tet80);
     const std::vector jobs(5, rays.from_outside(300, 200)); // in several launches, which hold parts of two jobs
@@ -90,7 +90,7 @@ TEST_P(Devices, give_joined_jobs_right_hits_in_a_sessions_first_launch_and_befor
     }
 }
 
-TEST_P(Devices, refuse_jobs_whose_hits_together_exceed_the_largest_buffer)
+TEST_P(DeviceSessions, refuse_jobs_whose_hits_together_exceed_the_largest_buffer)
 {
     const DeviceRays rays(make_cubes(3), Layout::tet80);
     const TraceJob job = rays.from_outside(64, 64);
@@ -104,7 +104,7 @@ TEST_P(Devices, refuse_jobs_whose_hits_together_exceed_the_largest_buffer)
 }
 
 // A pass that does nothing, for example because a counter of tiles is used up, leaves the hits of the first one.
-TEST_P(Devices, take_longer_for_more_passes_in_either_schedule)
+TEST_P(DeviceSessions, take_longer_for_more_passes_in_either_schedule)
 {
     const DeviceRays rays(make_cubes(4), Layout::tet80);
     TraceJob job = rays.from_outside(96, 96);
@@ -128,7 +128,7 @@ TEST_P(Devices, take_longer_for_more_passes_in_either_schedule)
         }
 }
 
-TEST_P(Devices, give_whole_hits_before_anybody_waits)
+TEST_P(DeviceSessions, give_whole_hits_before_anybody_waits)
 {
     const DeviceRays rays(make_cubes(8), Layout::tet80);
     const TraceJob job = rays.from_outside(800, 800);
@@ -143,7 +143,7 @@ TEST_P(Devices, give_whole_hits_before_anybody_waits)
     }
 }
 
-TEST_P(Devices, are_not_harmed_by_a_launch_that_nobody_waits_for)
+TEST_P(DeviceSessions, are_not_harmed_by_a_launch_that_nobody_waits_for)
 {
     const DeviceRays rays(make_cubes(3), Layout::tet80);
     const TraceJob job = rays.from_outside(20, 20);
@@ -155,7 +155,7 @@ TEST_P(Devices, are_not_harmed_by_a_launch_that_nobody_waits_for)
     }
 }
 
-TEST_P(Devices, hold_sessions_side_by_side)
+TEST_P(DeviceSessions, hold_sessions_side_by_side)
 {
     const DeviceRays a(make_cubes(3), Layout::tet80), b(make_cubes(5), Layout::tet96);
     for (const std::size_t device : usable) {
@@ -174,7 +174,7 @@ TEST_P(Devices, hold_sessions_side_by_side)
     }
 }
 
-TEST_P(Devices, tell_what_a_session_took_and_holds)
+TEST_P(DeviceSessions, tell_what_a_session_took_and_holds)
 {
     const DeviceRays rays(make_cubes(4), Layout::tet80);
     for (const std::size_t device : usable) {
@@ -185,7 +185,7 @@ TEST_P(Devices, tell_what_a_session_took_and_holds)
     }
 }
 
-TEST_P(Devices, tell_the_seconds_of_all_launches)
+TEST_P(DeviceSessions, tell_the_seconds_of_all_launches)
 {
     constexpr int max_images = 40;
     const DeviceRays rays(make_cubes(4), Layout::tet80);
@@ -206,7 +206,7 @@ TEST_P(Devices, tell_the_seconds_of_all_launches)
     }
 }
 
-TEST_P(Devices, time_an_image_in_one_launch_too)
+TEST_P(DeviceSessions, time_an_image_in_one_launch_too)
 {
     const DeviceRays rays(make_cubes(4), Layout::tet80);
     for (const std::size_t device : usable) {
@@ -220,4 +220,4 @@ TEST_P(Devices, time_an_image_in_one_launch_too)
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(each, Devices, ::testing::ValuesIn(apis()), case_name);
+INSTANTIATE_TEST_SUITE_P(each, DeviceSessions, ::testing::ValuesIn(apis()), case_name);

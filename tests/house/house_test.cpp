@@ -3,6 +3,9 @@
 
 #include <fstream>
 #include <gtest/gtest.h>
+#include <set>
+#include <sstream>
+#include <string>
 
 using namespace tetrace;
 using namespace tetrace::test;
@@ -41,12 +44,28 @@ std::string first_line(const fs::path& file)
     return line;
 }
 
-/// The sentence about a folder: the first line of its CMakeLists.txt, else of its first header, which begins with the
-/// folder's name there; empty without one.
+/// The comment on a folder in the list of folders of a CMakeLists.txt: "name # comment".
+std::string listed_sentence(const fs::path& list, const std::string& folder)
+{
+    std::ifstream stream(list);
+    for (std::string line; std::getline(stream, line);) {
+        std::istringstream words(line);
+        std::string name, mark, sentence;
+        if (words >> name >> mark && name == folder && mark == "#" && std::getline(words, sentence)) return sentence;
+    }
+    return {};
+}
+
+/// The sentence about a folder: the first line of its CMakeLists.txt, its line in that of a folder around it, or the
+/// first line of its first header, which begins with the folder's name.
 std::string sentence_of(const fs::path& folder)
 {
     const std::string of_target = first_line(folder / "CMakeLists.txt");
     if (of_target.starts_with("# ")) return of_target;
+    for (fs::path around = folder.parent_path(); around != root; around = around.parent_path())
+        if (std::string listed = listed_sentence(around / "CMakeLists.txt", fs::relative(folder, around));
+            !listed.empty())
+            return listed;
     std::set<fs::path> headers;
     for (const auto& entry : fs::directory_iterator(folder))
         if (entry.path().extension() == ".h") headers.insert(entry.path());

@@ -13,6 +13,7 @@
 #define KERNEL_ARRAYS_HEADER "kernels/bvh/bvh_arrays.h"
 
 namespace tetrace::test::bvh {
+namespace { // kernels of other sources have the same names
 
 #include "kernels/language/dialect_cpp.h"
 
@@ -57,6 +58,7 @@ inline Hit trace_packed(const tetrace::PackedScene& packed, const TraceParams& p
     }
 }
 
+} // namespace
 } // namespace tetrace::test::bvh
 
 #undef KERNEL_ARRAYS_HEADER

@@ -16,8 +16,10 @@
 #define KERNEL_METHOD_HEADER "kernels/methods/maria.h"
 
 namespace tetrace::test::maria {
+namespace { // kernels of other sources have the same names
 #include "kernels/kernel_cpp.h"
 }
+} // namespace tetrace::test::maria
 #undef KERNEL_STRUCTURE_HEADER
 #undef KERNEL_ARRAYS_HEADER
 #undef KERNEL_LAYOUT_HEADER

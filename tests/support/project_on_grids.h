@@ -20,6 +20,7 @@
 #include <vector>
 
 namespace tetrace::test {
+namespace { // kernels of other sources have the same names
 
 /// How many signs each level decided: products in float, what these lost, the rule for ties.
 inline std::array<std::uint64_t, 3> decided{};
@@ -159,4 +160,5 @@ inline std::uint32_t nearest_triangle(const TriangleMesh& mesh, const Line& line
     return nearest;
 }
 
+} // namespace
 } // namespace tetrace::test

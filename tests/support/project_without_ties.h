@@ -19,8 +19,10 @@
 #define KERNEL_METHOD_HEADER "kernels/methods/project.h"
 
 namespace tetrace::test::without_ties {
+namespace { // kernels of other sources have the same names
 #include "kernels/kernel_cpp.h"
 }
+} // namespace tetrace::test::without_ties
 #undef SIDE_AT_TIE
 #undef KERNEL_STRUCTURE_HEADER
 #undef KERNEL_ARRAYS_HEADER

@@ -208,7 +208,7 @@ protected:
         SceneWork scene(small_cubes(), options);
         const auto rows = verified_rows(rows_on(backend, device, options), scene, options);
         const std::string name = backend.devices()[device].implementation + ".json";
-        const std::filesystem::path path = std::filesystem::path(TETRACE_EXPECTED) / name;
+        const std::filesystem::path path = std::filesystem::path(TETRACE_EXPECTED_FOLDER) / name;
         if (!std::filesystem::exists(path)) return fmt::format("tests/expected/{}:\n{}\n", name, file_of(rows).dump(2));
         const json file = json::parse(read_text(path));
         compare(name, "self_test", file.at("self_test"), found_self_test(rows));

@@ -252,7 +252,7 @@ LANE_FN void write_words(const PacketJob& job, const Packet& packet, uint lanes,
 }
 
 // The hits of lanes whose rays have ended, or are left to the scalar kernel.
-[[gnu::noinline]] void write_hits(const PacketJob& job, Packet& packet, uint lanes)
+[[gnu::noinline, maybe_unused]] void write_hits(const PacketJob& job, Packet& packet, uint lanes)
 {
     Hits hits{};
     hits.of[0] = all(NO_HIT);
