@@ -232,6 +232,20 @@ nlohmann::json outcome_json(const ImageOutcome& outcome)
     return record_json(std::get<ImageRecord>(outcome));
 }
 
+nlohmann::json ended_json(const Outcome& outcome)
+{
+    if (const auto* skipped = std::get_if<Skipped>(&outcome)) return outcome_json(*skipped);
+    return outcome_json(std::get<Failed>(outcome));
+}
+
+Outcome ended_from(const nlohmann::json& json)
+{
+    const ImageOutcome outcome = outcome_from_json(json);
+    if (const auto* skipped = std::get_if<Skipped>(&outcome)) return *skipped;
+    if (const auto* failed = std::get_if<Failed>(&outcome)) return *failed;
+    throw std::domain_error("a row that has ended has an image");
+}
+
 ImageOutcome outcome_from_json(const nlohmann::json& json)
 {
     if (json.contains("skipped"))

@@ -42,6 +42,11 @@ using ImageOutcome = std::variant<ImageRecord, Skipped, Failed>;
 /// Throws nlohmann::json's exceptions or std::logic_error for input that outcome_json() did not write.
 [[nodiscard]] ImageOutcome outcome_from_json(const nlohmann::json& json);
 
+/// The same for how a row ended that is without hits. Precondition: it has ended so.
+[[nodiscard]] nlohmann::json ended_json(const Outcome& outcome);
+/// Throws as outcome_from_json() does, and std::domain_error for an image.
+[[nodiscard]] Outcome ended_from(const nlohmann::json& json);
+
 /// The same for samples of all views together.
 [[nodiscard]] nlohmann::json samples_json(const RowSamples& samples);
 /// Throws nlohmann::json's exceptions or std::logic_error for input that samples_json() did not write, and for times

@@ -1,6 +1,5 @@
 #include "bench/measuring/journal.h"
 
-#include "core/base/error.h"
 #include "core/base/files.h"
 #include "core/base/hash.h"
 
@@ -70,8 +69,8 @@ std::string differences(const json& theirs, const json& ours)
 
 [[noreturn]] void fail_at(const char* doing, const std::filesystem::path& path)
 {
-    throw Error(ErrorKind::invalid_input, fmt::format("{} the journal '{}': {}; name another file with --out", doing,
-                                                      path.string(), std::strerror(errno)));
+    throw JournalError(ErrorKind::invalid_input, fmt::format("{} the journal '{}': {}; name another file with --out",
+                                                             doing, path.string(), std::strerror(errno)));
 }
 
 /// The whole file.

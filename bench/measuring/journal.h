@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/base/error.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -8,6 +10,12 @@
 #include <vector>
 
 namespace tetrace {
+
+/// A journal that cannot be opened, read or written: it ends the run, not the rows that were being traced.
+class JournalError : public Error {
+public:
+    using Error::Error;
+};
 
 /// What a long run has finished so far, so that a killed run can continue. It is a file of one JSON object a line,
 /// {"checksum": ..., "entry": ...}; each is on the disk before append() returns. The checksum is hash_of() the entry's

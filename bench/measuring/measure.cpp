@@ -12,10 +12,12 @@
 #include "core/base/stopwatch.h"
 
 #include <algorithm>
+#include <exception>
 #include <fmt/format.h>
 #include <functional>
 #include <map>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -130,16 +132,20 @@ TimedPart warm_up_rows(std::vector<RowRun>& rows, unsigned samples, const Sample
 /// the disk.
 class SampleLog {
 public:
-    SampleLog(Journal* journal, MachineWatch& watch, unsigned samples)
-        : journal_(journal), watch_(&watch), samples_(samples)
+    SampleLog(Journal* journal, MachineWatch& watch, std::vector<RowRun>& rows, unsigned samples)
+        : journal_(journal), watch_(&watch), rows_(&rows), samples_(samples)
     {
     }
 
-    void begin_run(unsigned run) { run_ = run; }
+    void begin_run(unsigned run)
+    {
+        if (!pending_.empty()) write(false);
+        run_ = run;
+    }
     void add(const RowRun& row, const RowSamples& sample)
     {
         if (journal_ == nullptr) return;
-        append_samples(rows_[row_name(row.key)], sample);
+        append_samples(pending_[row_name(row.key)], sample);
         if (watch_->now() - written_s_ >= every_s) write(false);
     }
     /// is_last: of the run: the load is read, however short it was.
@@ -148,23 +154,28 @@ public:
         nlohmann::json readings = watch_->new_readings(is_last);
         if (journal_ == nullptr) return;
         nlohmann::json entry = {{samples_key, {{"run", run_}, {"of", samples_}}}, {"rows", nlohmann::json::object()}};
-        for (const auto& [name, samples] : rows_)
+        for (const auto& [name, samples] : pending_)
             entry["rows"][name] = samples_json(samples);
+        for (const RowRun& row : *rows_)
+            if (traced(row) == nullptr && told_.insert(&row).second)
+                entry[ended_key][row_name(row.key)] = ended_json(row.outcome);
         if (!readings.is_null()) entry[MachineWatch::entry_key] = std::move(readings);
         journal_->append(entry);
-        rows_.clear();
+        pending_.clear();
         written_s_ = watch_->now();
     }
 
-    static constexpr const char* samples_key = "samples";
+    static constexpr const char *samples_key = "samples", *ended_key = "ended";
 
 private:
     static constexpr double every_s = 2;
 
     Journal* journal_;
     MachineWatch* watch_;
+    std::vector<RowRun>* rows_;
     unsigned samples_, run_ = 0;
-    std::map<std::string, RowSamples> rows_;
+    std::map<std::string, RowSamples> pending_;
+    std::set<const RowRun*> told_; ///< rows that have ended: a run that goes on does not take them up again
     double written_s_ = 0;
 };
 
@@ -175,6 +186,7 @@ struct Sweep {
     SampleLog* log;
     unsigned samples; ///< per row and run
     double done = 0, all = 1;
+    std::exception_ptr failure = {}; ///< of the journal: Google Benchmark lets none through
 };
 
 /// Of the current run.
@@ -183,7 +195,7 @@ std::size_t samples_in_run(const RowRun& row)
     return row.samples_s.size() - std::accumulate(row.run_samples.begin(), row.run_samples.end(), std::size_t{0});
 }
 
-void take_sample(RowRun& row, const Sweep& sweep)
+RowSamples take_sample(RowRun& row, const Sweep& sweep)
 {
     const auto tell = [&](double done) {
         progress_line().show("measuring", (sweep.done + done) / sweep.all, -1,
@@ -205,17 +217,29 @@ void take_sample(RowRun& row, const Sweep& sweep)
         sample.latency_samples_s.push_back(run_pass(alone, 1, sweep.budget->clock()).kernel_s);
     }
     add_samples(row, sample);
-    sweep.log->add(row, sample);
+    return sample;
+}
+
+/// A journal that cannot be written ends the run, not the row.
+void keep_sample(const RowRun& row, const RowSamples& sample, Sweep& sweep)
+{
+    try {
+        sweep.log->add(row, sample);
+    } catch (const Error&) {
+        sweep.failure = std::current_exception();
+    }
 }
 
 void run_row(benchmark::State& state, RowRun& row, Sweep& sweep)
 {
     for ([[maybe_unused]] const auto iteration : state) {
-        if (is_interrupted()) {
+        if (is_interrupted() || sweep.failure) {
             state.SkipWithError("interrupted");
             return;
         }
-        if (traced(row) != nullptr) guarded(row, [&] { take_sample(row, sweep); });
+        std::optional<RowSamples> sample;
+        if (traced(row) != nullptr) guarded(row, [&] { sample = take_sample(row, sweep); });
+        if (sample) keep_sample(row, *sample, sweep);
         if (traced(row) == nullptr) {
             state.SkipWithError(reason_of(row).c_str());
             return;
@@ -262,30 +286,29 @@ void reopen_rows(std::vector<RowRun>& rows, const Options& options)
     }
 }
 
-/// At the end of a run.
+/// At the end of a run, in which an interrupted one may have taken none.
 void count_samples(std::vector<RowRun>& rows)
 {
     for (RowRun& row : rows)
-        if (is_timed(row)) row.run_samples.push_back(samples_in_run(row));
+        if (const std::size_t taken = samples_in_run(row); is_timed(row) && taken > 0) row.run_samples.push_back(taken);
 }
 
 /// What the journal of an earlier process of the run has.
 struct EarlierSamples {
     unsigned run = 0;     ///< that it was in
     unsigned samples = 0; ///< of each row in each run; 0: it took none
+    std::vector<std::pair<const RowRun*, std::pair<double, double>>> taken; ///< when each sample was, for the pulses
 };
 
-void restore_row(RowRun& row, const RowSamples& samples, unsigned most, Pulses& pulses)
+void restore_row(RowRun& row, const RowSamples& samples, unsigned most)
 {
     require_samples(samples, samples.samples_s.size(), true);
     add_samples(row, samples);
-    for (const auto& [begin_s, end_s] : samples.sampled_s)
-        pulses.sampled(row, begin_s, end_s);
     if (samples_in_run(row) > most)
         throw std::domain_error(fmt::format("{} has more than {} samples of a run", row_name(row.key), most));
 }
 
-EarlierSamples restore_samples(std::vector<RowRun>& rows, const Journal& journal, Pulses& pulses)
+EarlierSamples restore_samples(std::vector<RowRun>& rows, const Journal& journal)
 {
     EarlierSamples earlier;
     try {
@@ -295,10 +318,21 @@ EarlierSamples restore_samples(std::vector<RowRun>& rows, const Journal& journal
             earlier.samples = count_from<unsigned>(which.at("of"));
             for (const auto run = count_from<unsigned>(which.at("run")); earlier.run < run; ++earlier.run)
                 count_samples(rows);
-            for (RowRun& row : rows)
-                if (const auto found = entry.at("rows").find(row_name(row.key));
-                    is_timed(row) && found != entry["rows"].end())
-                    restore_row(row, samples_from(*found), earlier.samples, pulses);
+            const nlohmann::json none = nlohmann::json::object(), &samples = entry.at("rows"),
+                                 &ended = entry.contains(SampleLog::ended_key) ? entry[SampleLog::ended_key] : none;
+            for (RowRun& row : rows) {
+                const std::string name = row_name(row.key);
+                if (is_timed(row) && samples.contains(name)) {
+                    const RowSamples more = samples_from(samples[name]);
+                    restore_row(row, more, earlier.samples);
+                    for (const auto& interval : more.sampled_s)
+                        earlier.taken.emplace_back(&row, interval);
+                }
+                if (traced(row) != nullptr && ended.contains(name)) {
+                    row.outcome = ended_from(ended[name]);
+                    row.session.reset();
+                }
+            }
         }
     } catch (const nlohmann::json::exception& error) {
         journal.reject(fmt::format("samples in the journal are damaged: {}", error.what()));
@@ -344,11 +378,17 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
     const Sampler sampler(options.sample_s, budget, &watch);
     join_views_of(rows);
     result.runs = options.runs;
-    const TimedPart part = warm_up_rows(rows, options.samples, sampler, budget);
-    if (is_interrupted()) return result;
-    watch.pulses().watch(pointers_to(rows), last_view_pulse(budget.clock()));
     EarlierSamples earlier;
-    if (shared.journal != nullptr) earlier = restore_samples(rows, *shared.journal, watch.pulses());
+    if (shared.journal != nullptr) earlier = restore_samples(rows, *shared.journal);
+    result.samples = earlier.samples;
+    const TimedPart part = warm_up_rows(rows, options.samples, sampler, budget);
+    if (is_interrupted()) {
+        count_samples(rows);
+        return result;
+    }
+    watch.pulses().watch(pointers_to(rows), last_view_pulse(budget.clock()));
+    for (const auto& [row, interval] : earlier.taken)
+        watch.pulses().sampled(*row, interval.first, interval.second);
     const double for_samples_s = budget.left_s() - result.runs * part.latency_s - (result.runs - 1) * part.sweep_s;
     result.samples = earlier.samples > 0 ? earlier.samples
                                          : flags.repetitions.value_or(affordable_samples(
@@ -358,7 +398,7 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
     if (timed == 0) return result;
     const auto groups = sample_groups(pointers_to(rows));
     const Stopwatch stopwatch;
-    SampleLog log(shared.journal, watch, result.samples);
+    SampleLog log(shared.journal, watch, rows, result.samples);
     Sweep sweep{&budget, &sampler, &log, result.samples};
     sweep.all = static_cast<double>(timed) * result.samples * result.runs;
     for (const RowRun& row : rows)
@@ -375,6 +415,7 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
         log.begin_run(run);
         for (const auto& group : groups)
             if (register_rows(group, sweep)) google.run();
+        if (sweep.failure) std::rethrow_exception(sweep.failure);
         count_samples(rows);
     }
     watch.pulses().take();

@@ -21,6 +21,8 @@ std::string without_debug_warning(const std::string& text)
     return kept;
 }
 
+} // namespace
+
 /// Passes Google Benchmark's reports on under the bare row names. It removes the suffixes
 /// "/iterations:1/manual_time", which are the same for all rows and would make names depend on the number of
 /// measurements. Leaves out the warning that the library was built for debugging: what it times here is one call, by
@@ -58,14 +60,23 @@ public:
 
     void Finalize() override
     {
-        if (--parts_left_ == 0 && receiver_ != nullptr) receiver_->Finalize();
+        if (--parts_left_ == 0) end();
+    }
+
+    /// Ends the report now, as after an interrupt.
+    void end()
+    {
+        if (std::exchange(has_ended_, true) || !has_begun_ || receiver_ == nullptr) return;
+        receiver_->Finalize();
     }
 
 private:
     std::unique_ptr<benchmark::BenchmarkReporter> receiver_;
     std::size_t parts_left_;
-    bool has_begun_ = false;
+    bool has_begun_ = false, has_ended_ = false;
 };
+
+namespace {
 
 /// Google Benchmark's own reporter for a format: "console", "json" or "csv".
 std::unique_ptr<benchmark::BenchmarkReporter>
@@ -111,8 +122,10 @@ void GoogleReports::run()
     benchmark::RunSpecifiedBenchmarks(display_.get(), file_.get(), "all");
 }
 
-void GoogleReports::write() const
+void GoogleReports::write()
 {
+    display_->end();
+    if (file_ != nullptr) file_->end();
     std::cout.flush(); // Google Benchmark looks at no stream's state
     if (flags_.format && !std::cout)
         throw Error(ErrorKind::invalid_input, "writing the output of --benchmark_format to standard output failed; "

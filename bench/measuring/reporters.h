@@ -8,6 +8,8 @@
 
 namespace tetrace {
 
+class RowReporter;
+
 /// What Google Benchmark prints and writes about rows that it runs, where it was asked to.
 class GoogleReports {
 public:
@@ -17,13 +19,14 @@ public:
 
     /// Runs the registered benchmarks. The flags' filter was applied to the rows themselves, under the reported names.
     void run();
-    /// Writes the file of --benchmark_out. Throws Error{invalid_input} if it cannot be written, or what was printed.
-    void write() const;
+    /// Ends the reports, and writes the file of --benchmark_out. Throws Error{invalid_input} if it cannot be written,
+    /// or what was printed.
+    void write();
 
 private:
     BenchmarkFlags flags_;
     std::ostringstream text_; ///< for the file: Google Benchmark does not notice a full disk
-    std::unique_ptr<benchmark::BenchmarkReporter> display_, file_;
+    std::unique_ptr<RowReporter> display_, file_;
 };
 
 } // namespace tetrace

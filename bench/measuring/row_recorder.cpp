@@ -93,6 +93,7 @@ std::size_t RowRecorder::run(std::size_t parts, const std::string& name)
     if (shared_.progress == nullptr) progress.all = parts;
     if (samples_ == 0 || is_merged()) shared_.watch = nullptr;
     if (shared_.watch != nullptr) watch_rows(name);
+    if (restored_ > 0) something_to_keep();
     std::size_t part = restored_;
     progress.done += part;
     if (is_merged() && part < parts) reject_journal(fmt::format("{}: {} parts of {}", name, part, parts));
@@ -148,10 +149,9 @@ std::optional<json> RowRecorder::run_part(std::size_t part, bool is_last, const 
     }
     json entry = head_of(part);
     entry["rows"] = json::object();
-    for (const RowRun* row : rows_) // those that the budget has skipped: a run that goes on skips them too
-        if (const auto* skipped = std::get_if<Skipped>(&row->outcome);
-            skipped != nullptr && skipped->status == Status::skipped && row->scene != nullptr)
-            entry["rows"][row_name(row->key)] = outcome_json(*skipped);
+    for (const RowRun* row : rows_) // those that have ended, which a run that goes on does not take up again
+        if (traced(*row) == nullptr && row->scene != nullptr)
+            entry["rows"][row_name(row->key)] = ended_json(row->outcome);
     for (const std::size_t i : begun_) {
         entry["rows"][row_name(rows_[i]->key)] = outcome_json(outcome(i));
         if (traced(*rows_[i]) != nullptr) (*images_)[i].push_back(std::move(records_[i]));

@@ -4,6 +4,7 @@
 #include "bench/rows/scene_work.h"
 #include "bench/terminal/progress.h"
 #include "core/base/error.h"
+#include "core/base/hash.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,6 +35,8 @@ json run_head(const Options& options, const std::vector<RowKey>& keys)
                  {"compiler", program.compiler},
                  {"flags", program.flags},
                  {"cpu", host_identity().cpu},
+                 {"cameras", camera_set_name(options)},
+                 {"cameras_hash", options.own_cameras ? hash_text(options.own_cameras->hash()) : std::string()},
                  {"views", selected_views(options)},
                  {"size", {options.width, options.height}},
                  {"threads", resolved_threads(options)},

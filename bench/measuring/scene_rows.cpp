@@ -52,6 +52,8 @@ void verify_scene(std::vector<RowRun>& rows, SceneWork& scene, const Options& op
         if (row.scene == &scene) pointers.push_back(&row);
     try {
         verify_rows(pointers, scene, options, image_seen, shared);
+    } catch (const JournalError&) {
+        throw;
     } catch (const Error& error) {
         if (!ends_rows(error)) throw;
         say(fmt::format("{}: {}", scene.label(), error.what()));

@@ -123,8 +123,7 @@ ShardResult read_shard(const std::filesystem::path& path)
     shard.journal = read_journal(journal_file(path));
     if (shard.journal.head.value("shard", "") != text_of(shard.shard)) refuse_journal(shard);
     if (!shard.journal.finished)
-        refuse(fmt::format("{} did not end; repeat its command line{}", shard.name(),
-                           shard.result.head.verb == "reproduce" ? " with --resume" : ""));
+        refuse(fmt::format("{} did not end; repeat its command line with --resume", shard.name()));
     return shard;
 }
 

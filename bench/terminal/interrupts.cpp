@@ -3,6 +3,7 @@
 #include <atomic>
 #include <csignal>
 #include <cstring>
+#include <ctime>
 #include <unistd.h>
 
 namespace tetrace {
@@ -15,6 +16,8 @@ constexpr int signals[] = {SIGINT, SIGTERM};
 struct sigaction former[2]; ///< what the signals did, in their order
 bool handled[2];
 bool is_wanted = false;
+constexpr double same_s = 0.5; // `timeout` and launchers signal a process and then its group
+double first_s = 0;            ///< when the first signal came; 0: none has
 
 void restore(int i)
 {
@@ -23,13 +26,22 @@ void restore(int i)
 }
 
 /// Makes only async-signal-safe calls.
-void ask_to_stop(int)
+void ask_to_stop(int signal)
 {
+    timespec now{};
+    ::clock_gettime(CLOCK_MONOTONIC, &now);
+    const double now_s = static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+    if (first_s > 0) {
+        if (now_s - first_s < same_s) return;
+        restore(0);
+        restore(1);
+        ::raise(signal);
+        return;
+    }
+    first_s = now_s;
     constexpr char words[] = "\ntetrace: interrupted; finishing this step, to keep what is done. Again: end at once.\n";
     (void)!::write(STDERR_FILENO, words, sizeof words - 1);
     interrupted = true;
-    restore(0);
-    restore(1);
 }
 
 } // namespace
@@ -73,6 +85,7 @@ void interrupt()
 void forget_interrupt()
 {
     interrupted = false;
+    first_s = 0;
 }
 
 } // namespace tetrace

@@ -3,7 +3,8 @@
 namespace tetrace {
 
 /// While one of these lives, and from something_to_keep() on, the first SIGINT or SIGTERM only asks the work to stop,
-/// so that what it has so far is not lost; the second ends the process as usual. Signals that are ignored stay ignored.
+/// so that what it has so far is not lost; one that comes half a second later or more ends the process as usual.
+/// Signals that are ignored stay ignored.
 class StopWhenInterrupted {
 public:
     StopWhenInterrupted();

@@ -84,7 +84,9 @@ int bench_command(const Options& options)
     const StopWhenInterrupted stop;
     check_columns(options, bench_columns());
     if (!flags.out.empty()) check_writable("--benchmark_out", flags.out);
-    const auto journal = open_journal(options, run_head(options, keys));
+    nlohmann::json head = run_head(options, keys);
+    if (flags.repetitions) head["repetitions"] = *flags.repetitions;
+    const auto journal = open_journal(options, head);
     const BenchResult result = run_bench(keys, options, flags, journal.get());
     const Report report = bench_report(result, options);
     // Google Benchmark has already written its own format to standard output, if it was asked to.

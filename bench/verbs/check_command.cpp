@@ -165,6 +165,10 @@ int check_command(const Options& asked)
     const Options options = with_default_layouts(asked);
     if (options.list) return list_selected(options);
     if (options.defects) return check_defects(options);
+    if (options.resume && options.picture_folder)
+        throw Error(ErrorKind::usage,
+                    "--resume: --differences would lack the pictures of views that were traced before; "
+                    "leave one of them out");
     check_output(options);
     if (options.junit && !on_standard_output(options.junit)) check_writable("--junit", *options.junit);
     const StopWhenInterrupted stop;
@@ -177,7 +181,8 @@ int check_command(const Options& asked)
         if (error.kind() != ErrorKind::interrupted) write_junit(checked.rows, options, error.what());
         throw;
     }
-    write_junit(checked.rows, options);
+    const bool interrupted = code == exit_code(ErrorKind::interrupted);
+    write_junit(checked.rows, options, interrupted ? "the check was interrupted: not all views were traced" : "");
     return code;
 }
 

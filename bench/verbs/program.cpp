@@ -37,10 +37,13 @@ std::string command_of(const std::vector<std::string>& arguments)
 
 void say_how_to_go_on(const Options& options)
 {
-    const bool resumes = std::ranges::find(command_line(), "--resume") != command_line().end();
-    say_when_interrupted(fmt::format("tetrace: what is finished is in '{}'; to go on: {}{}",
-                                     journal_file(*options.out).string(), command_of(command_line()),
-                                     resumes ? "" : " --resume"));
+    std::vector<std::string> words = command_line();
+    std::erase_if(words, [](const std::string& word) { // --resume refuses them, see check_resume()
+        return word.starts_with("--benchmark_out") || word.starts_with("--benchmark_format");
+    });
+    if (std::ranges::find(words, "--resume") == words.end()) words.emplace_back("--resume");
+    say_when_interrupted(fmt::format("tetrace: what is finished is in '{}'; to go on: {}",
+                                     journal_file(*options.out).string(), command_of(words)));
 }
 
 int end_interrupted()

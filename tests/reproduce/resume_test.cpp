@@ -135,6 +135,9 @@ TEST_F(Resume, check_goes_on_with_the_views_that_it_has_and_leaves_no_journal)
     const Ended other = run("--method maria --layout tet80,tet96 --size 32 --views 0-3 --out r.json --resume");
     EXPECT_EQ(other.code, 2);
     EXPECT_TRUE(contains(other.errors, "size: [16,16] there, [32,32] here")) << other.errors;
+    const Ended elsewhere = run(command + "--camera-set orbit --out r.json --resume");
+    EXPECT_EQ(elsewhere.code, 2);
+    EXPECT_TRUE(contains(elsewhere.errors, "cameras: \"frame\" there, \"orbit\" here")) << elsewhere.errors;
     EXPECT_EQ(run(command + "--out r.json").code, 0) << "takes seconds: a new run begins anew";
     write_file(folder_ / "r.json.journal", "a diary");
     EXPECT_EQ(run(command + "--out r.json").code, 2) << "not a journal";
@@ -173,6 +176,19 @@ TEST_F(Resume, bench_goes_on_with_the_samples_that_it_has)
         EXPECT_EQ(resumed["rows"][row]["times"].at("runs").size(), 2u);
         EXPECT_TRUE(std::equal(before.begin(), before.end(), after.begin())) << "not taken again";
         EXPECT_EQ(part["rows"][row].at("hit_hash"), resumed["rows"][row].at("hit_hash"));
+    }
+}
+
+TEST_F(Resume, bench_keeps_the_samples_of_each_run_apart)
+{
+    verb_ = "bench";
+    const std::string command = "--method maria --layout tet80,tet96 --size 16 --views 0 --samples 10 --runs 2 "
+                                "--sample-time 0 --out r.json";
+    EXPECT_EQ(end(start(command, 4)).code, -1) << "its head, a view, and the samples of each run";
+    ASSERT_EQ(run(command + " --resume").code, 0);
+    for (const json& row : result("r.json").at("rows")) {
+        EXPECT_EQ(row.at("times").at("samples_s").size(), 20u);
+        EXPECT_EQ(row.at("times").at("runs").size(), 2u);
     }
 }
 
