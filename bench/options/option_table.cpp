@@ -353,7 +353,7 @@ std::vector<OptionRow> make_table()
                       driver_options, judging_options, report_options, sharing_options, output_options, dump_options})
         for (OptionRow& row : part())
             table.push_back(std::move(row));
-    std::ranges::stable_partition(table, [](const OptionRow& row) { return row.group != experiments; });
+    std::stable_partition(table.begin(), table.end(), [](const OptionRow& row) { return row.group != experiments; });
     return table;
 }
 

@@ -68,7 +68,7 @@ std::vector<std::uint32_t> packing_order(const Scene& scene, TetOrder order)
     std::ranges::stable_sort(tets, [&](auto a, auto b) { return key[a] < key[b]; });
     if (order == TetOrder::hilbert) return tets;
     const std::vector<bool> reached = reached_tets(scene.tets);
-    std::ranges::stable_partition(tets, [&](auto tet) { return reached[tet]; });
+    std::stable_partition(tets.begin(), tets.end(), [&](auto tet) { return reached[tet]; });
     return order == TetOrder::reached ? tets : in_chains(scene.tets, tets);
 }
 

@@ -30,8 +30,6 @@ struct Aim {
     Double3 origin;
     Double3 target = {0, 0, 0};
     Double3 up = {0, 1, 0}; ///< of any length, not along the line of sight
-
-    friend bool operator==(const Aim&, const Aim&) = default;
 };
 
 /// Own cameras are within this many radii of the centre: the bounds on rounding are derived for them.
