@@ -53,7 +53,7 @@ using ImageOutcome = std::variant<ImageRecord, Skipped, Failed>;
 /// that cannot be.
 [[nodiscard]] RowSamples samples_from(const nlohmann::json& json);
 /// Throws std::domain_error unless there are so many samples, each with possible times. with_intervals: whether each
-/// must tell when it was taken.
+/// must say when it was taken.
 void require_samples(const RowSamples& samples, std::size_t count, bool with_intervals);
 
 } // namespace tetrace

@@ -10,7 +10,7 @@ namespace tetrace {
 
 class RowReporter;
 
-/// What Google Benchmark prints and writes about rows that it runs, where it was asked to.
+/// What Google Benchmark prints and writes about rows that it runs, if it is asked to.
 class GoogleReports {
 public:
     /// parts: run() will be called so often at most, for one report.

@@ -155,9 +155,12 @@ TEST_F(Resume, bench_goes_on_with_the_samples_that_it_has)
             taken.push_back(row.at("times").at("samples_s").size());
         return taken;
     };
-    const Ended ended = end(start(command, 5, SIGTERM)); // its head, two views, and samples of some seconds
+    const Ended ended =
+        end(start(command + " --benchmark_out=g.json", 5, SIGTERM)); // its head, two views, and samples of some seconds
     EXPECT_EQ(ended.code, 130) << ended.errors;
     EXPECT_TRUE(contains(ended.errors, "to go on: tetrace bench")) << ended.errors;
+    EXPECT_FALSE(contains(ended.errors, "--benchmark_out")) << "with --resume it is refused";
+    EXPECT_TRUE(json::parse(read_text(folder_ / "g.json")).contains("benchmarks")) << "whole JSON";
     const json part = result("r.json");
     EXPECT_EQ(part.at("interrupted"), true);
     for (const std::size_t taken : counts(part)) {
@@ -177,6 +180,15 @@ TEST_F(Resume, bench_goes_on_with_the_samples_that_it_has)
         EXPECT_TRUE(std::equal(before.begin(), before.end(), after.begin())) << "not taken again";
         EXPECT_EQ(part["rows"][row].at("hit_hash"), resumed["rows"][row].at("hit_hash"));
     }
+}
+
+TEST_F(Resume, junit_of_an_interrupted_check_says_so)
+{
+    verb_ = "check";
+    const Ended ended =
+        end(start("--method maria --layout tet80 --size 16 --views 0-3 --junit j.xml --out r.json", 3, SIGTERM));
+    EXPECT_EQ(ended.code, 130) << ended.errors;
+    EXPECT_TRUE(contains(read_text(folder_ / "j.xml"), "the check was interrupted"));
 }
 
 TEST_F(Resume, bench_keeps_the_samples_of_each_run_apart)
