@@ -7,6 +7,9 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <limits>
+#include <map>
+#include <tuple>
 
 namespace tetrace {
 
@@ -69,12 +72,19 @@ std::string interval_text(const Comparison& comparison)
 
 namespace {
 
-std::string arena_of(const RowRecord& row, std::size_t hardware)
+/// The device of a contest: its hardware, and the API too if that is emulated; and how many threads use it.
+using Place = std::tuple<DeviceKind, std::size_t, std::string, unsigned>;
+
+/// Empty if nothing is known. A row whose scene could not be loaded has no device.
+std::optional<Place> place_of(const RowRecord& row, std::size_t hardware)
 {
     const RowKey& key = row.key;
-    const std::string device = row.device.kind == DeviceKind::emulated ? fmt::format("{}:{}", key.backend, key.device)
-                                                                       : fmt::format("{} {}", hardware, key.threads);
-    return fmt::format("{} {} {} {}", key.scene, name_of(key.rays), name_of(key.ray_order), device);
+    if (row.device.name.empty()) {
+        if (!on_reference(key) && !is_embree(key.kernel.layout)) return std::nullopt;
+        return Place{DeviceKind::cpu, std::numeric_limits<std::size_t>::max(), {}, key.threads};
+    }
+    const bool is_emulated = row.device.kind == DeviceKind::emulated;
+    return Place{row.device.kind, hardware, is_emulated ? device_label(key) : std::string(), key.threads};
 }
 
 TotalCost total_cost(const SetupCost& cost, double mrays_per_s)
@@ -84,33 +94,47 @@ TotalCost total_cost(const SetupCost& cost, double mrays_per_s)
 
 } // namespace
 
-Contenders contenders_of(const std::vector<RowRecord>& rows)
+std::optional<double> mrays_of(const RowRecord& row)
 {
-    const auto hardware = hardware_of(rows);
-    Contenders found;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        const auto figures = figures_of(rows[i]);
-        if (!figures) continue;
-        const KernelId& kernel = rows[i].key.kernel;
-        found.list.push_back({row_label(rows[i].key), arena_of(rows[i], hardware[i]),
-                              kernel.structure == Structure::bvh, is_embree(kernel.layout), is_single_ray(kernel),
-                              figures->mrays_per_s});
-        found.index.push_back(i);
-    }
-    return found;
+    const auto figures = figures_of(row);
+    return figures ? std::optional(figures->mrays_per_s) : std::nullopt;
+}
+
+std::vector<Contest<RowRecord>> contests_of(const std::vector<const RowRecord*>& rows)
+{
+    std::vector<Device> devices;
+    for (const RowRecord* row : rows)
+        devices.push_back(row->device);
+    const auto hardware = physical_devices(devices);
+    std::vector<const RowRecord*> placed;
+    std::map<const RowRecord*, Place> places;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        if (const auto place = place_of(*rows[i], hardware[i])) {
+            placed.push_back(rows[i]);
+            places.emplace(rows[i], *place);
+        }
+    return contests_of(placed, [&](const RowRecord& a, const RowRecord& b) {
+        return places.at(&a) == places.at(&b) && same_rays(a.key, b.key);
+    });
+}
+
+std::vector<Contest<RowRecord>> contests_of(const std::vector<RowRecord>& rows)
+{
+    std::vector<const RowRecord*> all;
+    for (const RowRecord& row : rows)
+        all.push_back(&row);
+    return contests_of(all);
 }
 
 std::vector<std::optional<Comparison>> compare_with_best_bvh(const std::vector<RowRecord>& rows)
 {
-    const Contenders contenders = contenders_of(rows);
     std::vector<std::optional<Comparison>> result(rows.size());
-    for (std::size_t i = 0; i < contenders.list.size(); ++i) {
-        const auto best = best_bvh(contenders.list, i);
-        if (!best) continue;
-        const RowRecord& bvh = rows[contenders.index[*best]];
-        result[contenders.index[i]] =
-            *best == i ? Comparison{&bvh, 1, {}} : compare_rates(bvh, rows[contenders.index[i]]);
-    }
+    for (const auto& contest : contests_of(rows))
+        if (const RowRecord* const bvh = contest.fastest(Rival::any))
+            for (const RowRecord* row : contest.rows)
+                if (figures_of(*row))
+                    result[static_cast<std::size_t>(row - rows.data())] =
+                        row == bvh ? Comparison{bvh, 1, {}} : compare_rates(*bvh, *row);
     return result;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/rows/best_bvh.h"
+#include "bench/rows/contest.h"
 #include "bench/rows/row_record.h"
 #include "bench/statistics/rank_interval.h"
 
@@ -30,19 +30,25 @@ struct Comparison {
 /// compared. Empty for references themselves, Embree's rows, and rows without a rate.
 [[nodiscard]] std::vector<std::optional<Comparison>> compare_rows(const std::vector<RowRecord>& rows);
 
-/// The timed rows as the comparison of tets with BVHs sees them; index: of each in `rows`. An arena is the host (of
-/// openmp and Embree), a GPU under all its APIs, or one emulated device of one backend.
-struct Contenders {
-    std::vector<Contender> list;
-    std::vector<std::size_t> index;
-};
-[[nodiscard]] Contenders contenders_of(const std::vector<RowRecord>& rows);
+/// What Contest asks of a row.
+[[nodiscard]] std::optional<double> mrays_of(const RowRecord& row);
+[[nodiscard]] inline const KernelId& kernel_of(const RowRecord& row)
+{
+    return row.key.kernel;
+}
 
-/// Each row compared with the fastest BVH of its arena, row by row. That BVH's own ratio is 1, without an interval.
+/// The contests of rows, whatever became of them. Their devices are the host (of openmp and Embree), a GPU under all
+/// its APIs, or one emulated device of one backend. Rows whose device is not known are in none, except for openmp's and
+/// Embree's: these run on the host.
+[[nodiscard]] std::vector<Contest<RowRecord>> contests_of(const std::vector<const RowRecord*>& rows);
+/// Of all rows; they keep their addresses.
+[[nodiscard]] std::vector<Contest<RowRecord>> contests_of(const std::vector<RowRecord>& rows);
+
+/// Each row compared with the fastest BVH of its contest, row by row. That BVH's own ratio is 1, without an interval.
 /// Empty for rows without a rate or a BVH to compare with.
 [[nodiscard]] std::vector<std::optional<Comparison>> compare_with_best_bvh(const std::vector<RowRecord>& rows);
 
-/// When building a row's tets has paid against the fastest BVH of its arena, both builds counted.
+/// When building a row's tets has paid against the fastest BVH of its contest, both builds counted.
 struct PaidBuild {
     enum class When { at_once, later, never, unclear };
     When when = When::never;

@@ -88,6 +88,14 @@ std::optional<Figures> figures_of(const RowRecord& row)
     return figures;
 }
 
+std::string remarks_on(const RowRecord& row)
+{
+    const auto figures = figures_of(row);
+    const std::string flawed = status_of(row) == Status::flawed ? "flawed" : "";
+    if (!figures || !figures->noisy) return flawed;
+    return flawed.empty() ? "noisy" : flawed + ", noisy";
+}
+
 std::optional<double> ratio_to_single(const RowRecord& row, const std::vector<RowRecord>& rows)
 {
     if (!runs_on_host(row.device)) return std::nullopt;

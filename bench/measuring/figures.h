@@ -4,6 +4,7 @@
 #include "bench/statistics/statistics.h"
 
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace tetrace {
@@ -26,6 +27,9 @@ struct Figures {
 
 /// Empty unless the row is ok or flawed and has samples.
 [[nodiscard]] std::optional<Figures> figures_of(const RowRecord& row);
+
+/// What speaks against a row's rate: "flawed", "noisy", or "flawed, noisy"; empty if nothing does.
+[[nodiscard]] std::string remarks_on(const RowRecord& row);
 
 /// Bytes that a step of the walk loads from its tet's record, on average (docs/spec/devices.md, W7): three or four
 /// vertices and a face. An estimate of the memory traffic: memory transfers whole lines, and caches hold some of them.

@@ -12,120 +12,81 @@ namespace tetrace {
 
 namespace {
 
-/// Rows that may be ranked with each other: the same rays on one piece of hardware, in any structure and layout.
-struct Contest {
-    const RowRecord* any = nullptr;
-    std::vector<const RowRecord*> rows; ///< timed ones
+using RowContest = Contest<RowRecord>;
 
-    [[nodiscard]] const RowRecord& fastest() const
-    {
-        return **std::ranges::max_element(rows, {}, [](const RowRecord* row) { return rate_of(*row); });
-    }
-    [[nodiscard]] static double rate_of(const RowRecord& row) { return figures_of(row)->mrays_per_s; }
-};
-
-/// Emulated devices are in none: they are not to be ranked.
-std::vector<Contest> contests_of(const BenchResult& result)
+/// Of timed rows. Emulated devices are in none: they are not to be ranked.
+std::vector<RowContest> ranked_contests(const BenchResult& result)
 {
-    std::vector<Contest> contests;
-    const auto hardware_of = [&](const RowRecord& row) {
-        return result.devices.at(*device_of(row, result.devices)).hardware;
-    };
-    for (const RowRecord& row : result.rows) {
-        if (!figures_of(row) || !device_of(row, result.devices) || row.device.kind == DeviceKind::emulated) continue;
-        const auto same = std::ranges::find_if(contests, [&](const Contest& other) {
-            return same_rays(other.any->key, row.key) && hardware_of(*other.any) == hardware_of(row);
-        });
-        (same == contests.end() ? contests.emplace_back(Contest{&row, {}}) : *same).rows.push_back(&row);
-    }
-    return contests;
+    std::vector<const RowRecord*> ranked;
+    for (const RowRecord& row : result.rows)
+        if (figures_of(row) && row.device.kind != DeviceKind::emulated) ranked.push_back(&row);
+    return contests_of(ranked);
 }
 
-/// "bunny", "bunny, shadow rays", with the device where there are several.
-std::string contest_title(const Contest& contest, bool with_device)
+const RowRecord& first_of(const RowContest& contest)
 {
-    const RowKey& key = contest.any->key;
-    std::string title = key.scene;
-    if (key.rays != RayKind::primary) title += fmt::format(", {} rays", name_of(key.rays));
-    if (key.ray_order != RayOrder::tiles) title += fmt::format(" {}", name_of(key.ray_order));
-    return with_device ? fmt::format("{} ({})", title, contest.any->device.name) : title;
+    return *contest.rows.front();
+}
+
+/// "bunny", "bunny, shadow rays", with the device if there are several.
+std::string contest_title(const RowContest& contest, bool with_device)
+{
+    const std::string title = rays_title(first_of(contest).key);
+    return with_device ? fmt::format("{} ({})", title, first_of(contest).device.name) : title;
 }
 
 std::string row_text(const RowRecord& row)
 {
-    std::string remarks;
-    if (status_of(row) == Status::flawed) remarks = "flawed";
-    if (figures_of(row)->noisy) remarks += remarks.empty() ? "noisy" : ", noisy";
+    const std::string remarks = remarks_on(row);
     return row_label(row.key) + (remarks.empty() ? "" : " (" + remarks + ")");
 }
 
 /// One phrase for each contest, from those that have something to tell.
 template <class Phrase>
-std::string joined(const std::vector<Contest>& contests, const Phrase& phrase)
+std::string joined(const std::vector<RowContest>& contests, const Phrase& phrase)
 {
-    const bool with_device = std::ranges::any_of(contests, [&](const Contest& contest) {
-        return contest.any->device.name != contests.front().any->device.name;
+    const bool with_device = std::ranges::any_of(contests, [&](const RowContest& contest) {
+        return first_of(contest).device.name != first_of(contests.front()).device.name;
     });
     std::vector<std::string> parts;
-    for (const Contest& contest : contests)
+    for (const RowContest& contest : contests)
         if (const std::string text = phrase(contest); !text.empty())
             parts.push_back(contest_title(contest, with_device) + ": " + text);
     return fmt::format("{}", fmt::join(parts, "; "));
 }
 
-/// The rows of a contest, all in one arena.
-std::vector<Contender> contenders_of(const Contest& contest)
+/// "1.84 [1.80, 1.88] of the rate of the fastest BVH, bvh packet16 on embree".
+std::string over_bvh_text(const RowContest& contest, const RowRecord& walk, const RowRecord& bvh)
 {
-    std::vector<Contender> list;
-    for (const RowRecord* row : contest.rows) {
-        const KernelId& kernel = row->key.kernel;
-        list.push_back({row_text(*row), "", kernel.structure == Structure::bvh, is_embree(kernel.layout),
-                        is_single_ray(kernel), Contest::rate_of(*row)});
-    }
-    return list;
-}
-
-/// The fastest walk through tets, of all or of those that trace one ray at a time.
-std::optional<std::size_t> best_walk(const std::vector<Contender>& rows, bool single)
-{
-    std::optional<std::size_t> best;
-    for (std::size_t i = 0; i < rows.size(); ++i)
-        if (!rows[i].is_bvh && (rows[i].is_single || !single) &&
-            (!best || rows[i].mrays_per_s > rows[*best].mrays_per_s))
-            best = i;
-    return best;
-}
-
-/// "1.84 [1.80, 1.88] of the rate of the fastest BVH, bvh packet16 on embree". rows: of the contest.
-std::string over_bvh_text(const Contest& contest, const std::vector<Contender>& rows, std::size_t walk, std::size_t bvh)
-{
-    const Comparison comparison = compare_rates(*contest.rows[bvh], *contest.rows[walk]);
+    const Comparison comparison = compare_rates(bvh, walk);
     const std::string interval = interval_text(comparison);
     return fmt::format("{:.2f}{} of the rate of {}", comparison.ratio, interval.empty() ? "" : " " + interval,
-                       bvh_text(rows, bvh));
+                       contest.bvh_text(bvh, row_text(bvh)));
 }
 
 /// One ray at a time, over our fastest such BVH and over Embree's single rays; empty if all rows are ours and do so.
-std::string single_text(const Contest& contest, const std::vector<Contender>& rows)
+std::string single_text(const RowContest& contest)
 {
-    if (std::ranges::all_of(rows, [](const Contender& row) { return row.is_single && !row.is_embree; })) return {};
-    const auto walk = best_walk(rows, true);
-    if (!walk) return {};
+    if (std::ranges::all_of(contest.rows, [](const RowRecord* row) {
+            return is_single_ray(row->key.kernel) && !is_embree(row->key.kernel.layout);
+        }))
+        return {};
+    const RowRecord* const walk = contest.fastest(Walk::single);
+    if (walk == nullptr) return {};
     std::vector<std::string> parts;
-    for (const BvhKind kind : {BvhKind::our_single, BvhKind::embree_single})
-        if (const auto bvh = best_bvh(rows, *walk, kind)) parts.push_back(over_bvh_text(contest, rows, *walk, *bvh));
+    for (const Rival kind : {Rival::our_single, Rival::embree_single})
+        if (const RowRecord* const bvh = contest.fastest(kind)) parts.push_back(over_bvh_text(contest, *walk, *bvh));
     if (parts.empty()) return {};
-    return fmt::format("; one ray at a time, {} has {}", rows[*walk].name, fmt::join(parts, " and "));
+    return fmt::format("; one ray at a time, {} has {}", row_text(*walk), fmt::join(parts, " and "));
 }
 
-std::string structures_text(const std::vector<Contest>& contests)
+std::string structures_text(const std::vector<RowContest>& contests)
 {
-    return joined(contests, [](const Contest& contest) -> std::string {
-        const auto rows = contenders_of(contest);
-        const auto walk = best_walk(rows, false), bvh = walk ? best_bvh(rows, *walk) : std::nullopt;
-        if (!bvh) return {};
-        return fmt::format("the fastest walk through tets, {}, has {}{}", rows[*walk].name,
-                           over_bvh_text(contest, rows, *walk, *bvh), single_text(contest, rows));
+    return joined(contests, [](const RowContest& contest) -> std::string {
+        const RowRecord *const walk = contest.fastest(Walk::any), *const bvh = contest.fastest(Rival::any);
+        if (walk == nullptr || bvh == nullptr) return {};
+        return fmt::format("the fastest walk through tets, {}, has {}{}", row_text(*walk),
+                           over_bvh_text(contest, *walk, *bvh), single_text(contest));
     });
 }
 
@@ -169,12 +130,12 @@ std::string pulses_text(const std::vector<Pulse>& pulses)
 
 Sheet answer_of(const BenchResult& result)
 {
-    const auto contests = contests_of(result);
+    const auto contests = ranked_contests(result);
     Sheet sheet;
     if (!contests.empty())
-        sheet.labelled("Fastest", joined(contests, [](const Contest& contest) {
-                                      const RowRecord& best = contest.fastest();
-                                      return fmt::format("{}, {:.1f} Mrays/s", row_text(best), Contest::rate_of(best));
+        sheet.labelled("Fastest", joined(contests, [](const RowContest& contest) {
+                                      const RowRecord& best = *fastest(contest.rows);
+                                      return fmt::format("{}, {:.1f} Mrays/s", row_text(best), *mrays_of(best));
                                   }) + ".");
     std::string compared = structures_text(contests);
     if (const std::string apis = apis_text(result); !apis.empty()) compared += (compared.empty() ? "" : ". ") + apis;

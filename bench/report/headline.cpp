@@ -1,6 +1,5 @@
 #include "bench/report/charts/bar_chart.h"
 #include "bench/report/sections.h"
-#include "bench/rows/best_bvh.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -13,86 +12,61 @@ namespace {
 
 constexpr std::size_t max_charts = 2; // more do not fit a first screen
 
-/// The rows of one device that traced the same rays: which structure is faster?
-struct Contest {
+/// A contest of timed rows that has tets and BVHs: which structure is faster?
+struct StructureContest : Contest<ReportRow> {
     const RowGroup* group = nullptr;
     std::string device;
-    std::vector<const ReportRow*> rows; ///< fastest first
+    const ReportRow *walk = nullptr, *bvh = nullptr; ///< the fastest
 
-    /// The fastest whose kernel's name begins so; null if there is none.
-    [[nodiscard]] const ReportRow* fastest(std::string_view beginning) const
-    {
-        const auto found =
-            std::ranges::find_if(rows, [&](const ReportRow* row) { return row->kernel.starts_with(beginning); });
-        return found == rows.end() ? nullptr : *found;
-    }
-    [[nodiscard]] double ratio() const { return fastest("cdt ")->rate->mrays_per_s / rate_of_bvh(); }
-    /// "the fastest BVH, bvh packet16 on embree".
-    [[nodiscard]] std::string bvh() const
-    {
-        const auto list = contenders();
-        return bvh_text(list, *best_bvh(list, 0));
-    }
-
-private:
-    [[nodiscard]] std::vector<Contender> contenders() const
-    {
-        std::vector<Contender> list;
-        for (const ReportRow* row : rows)
-            list.push_back({.name = row->kernel + " on " + row->api,
-                            .arena = "",
-                            .is_bvh = row->kernel.starts_with("bvh "),
-                            .mrays_per_s = row->rate->mrays_per_s});
-        return list;
-    }
-    [[nodiscard]] double rate_of_bvh() const
-    {
-        const auto list = contenders();
-        return list[*best_bvh(list, 0)].mrays_per_s;
-    }
+    [[nodiscard]] double ratio() const { return walk->rate->mrays_per_s / bvh->rate->mrays_per_s; }
 };
 
-/// Of primary rays and both structures; GPUs' first. Emulated devices are in none: they are not to be ranked.
-std::vector<Contest> contests_of(const std::vector<RowGroup>& groups, std::size_t files)
+/// Of primary rays; GPUs' first. Emulated devices are in none: they are not to be ranked. Nor are kernels ranked with
+/// one that is not known.
+std::vector<StructureContest> structure_contests(const std::vector<RowGroup>& groups, std::size_t files)
 {
-    std::vector<Contest> contests;
+    std::vector<StructureContest> contests;
     for (const RowGroup& group : groups) {
-        if (group.kind == DeviceKind::emulated || group.rays != "primary") continue;
-        const std::size_t first = contests.size();
-        for (const ReportRow* row : group.rows) {
-            const std::string device = device_text(*row, files);
-            const auto same =
-                std::ranges::find_if(contests.begin() + static_cast<std::ptrdiff_t>(first), contests.end(),
-                                     [&](const Contest& other) { return other.device == device; });
-            (same == contests.end() ? contests.emplace_back(Contest{&group, device, {}}) : *same).rows.push_back(row);
+        if (group.kind == DeviceKind::emulated || group.rays != name_of(RayKind::primary)) continue;
+        for (auto& contest : contests_of(group.rows, [&](const ReportRow&a, const ReportRow&b) {
+                 return device_text(a, files) == device_text(b, files);
+             })) {
+            if (!std::ranges::all_of(contest.rows, [](const ReportRow* row) { return row->known_kernel.has_value(); }))
+                continue;
+            const ReportRow *const walk = contest.fastest(Walk::any), *const bvh = contest.fastest(Rival::any);
+            const std::string device = device_text(*contest.rows.front(), files);
+            if (walk != nullptr && bvh != nullptr) contests.push_back({std::move(contest), &group, device, walk, bvh});
         }
     }
-    std::erase_if(contests, [](const Contest& one) { return !one.fastest("cdt ") || !one.fastest("bvh "); });
     std::ranges::stable_sort(contests, std::greater(),
-                             [](const Contest& one) { return one.group->kind == DeviceKind::gpu; });
+                             [](const StructureContest& one) { return one.group->kind == DeviceKind::gpu; });
     return contests;
 }
 
-std::string answer_text(const Contest& contest)
+std::string bvh_text(const StructureContest& contest)
+{
+    return contest.bvh_text(*contest.bvh, contest.bvh->label());
+}
+
+std::string answer_text(const StructureContest& contest)
 {
     const double ratio = contest.ratio();
     return fmt::format("{} on {}: rays go through the tets {:.2f} times as {} as through {}", contest.group->scene.name,
-                       contest.device, std::max(ratio, 1 / ratio), ratio >= 1 ? "fast" : "slowly", contest.bvh());
+                       contest.device, std::max(ratio, 1 / ratio), ratio >= 1 ? "fast" : "slowly", bvh_text(contest));
 }
 
 /// The fastest of each structure, and the paper's own pair.
-Html chart_of(const Contest& contest)
+Html chart_of(const StructureContest& contest)
 {
     std::vector<const ReportRow*> shown;
-    for (const char* const beginning : {"cdt ", "bvh ", "cdt maria tet80", "bvh bvh2"}) {
-        const ReportRow* const row = contest.fastest(beginning);
+    for (const ReportRow* row :
+         {contest.walk, contest.bvh, contest.fastest(Walk::maria), contest.fastest(Layout::bvh2)})
         if (row != nullptr && std::ranges::find(shown, row) == shown.end()) shown.push_back(row);
-    }
     std::ranges::stable_sort(shown, std::greater(), [](const ReportRow* row) { return row->rate->mrays_per_s; });
     BarChart chart{answer_text(contest), "Mrays/s", {}};
     for (const ReportRow* row : shown)
         chart.bars.push_back({row->name(),
-                              row->kernel + "  " + row->api,
+                              row->kernel() + "  " + row->api,
                               "",
                               api_series(row->row->backend),
                               row->rate->mrays_per_s,
@@ -105,14 +79,14 @@ Html chart_of(const Contest& contest)
 
 /// "Rate of the tets on a device: bunny 1.41 of that of the fastest BVH, bvh cwbvh on cuda, armadillo ..." for each
 /// device of the contests without a chart.
-Html other_answers(std::span<const Contest> contests)
+Html other_answers(std::span<const StructureContest> contests)
 {
     std::vector<std::pair<std::string, std::string>> lines;
-    for (const Contest& contest : contests) {
+    for (const StructureContest& contest : contests) {
         const auto same = std::ranges::find(lines, contest.device, &std::pair<std::string, std::string>::first);
         std::string& line = (same == lines.end() ? lines.emplace_back(contest.device, "") : *same).second;
         line += fmt::format("{}{} {:.2f} of that of {}", line.empty() ? "" : "; ", contest.group->scene.name,
-                            contest.ratio(), contest.bvh());
+                            contest.ratio(), bvh_text(contest));
     }
     Html items;
     for (const auto& [device, line] : lines)
@@ -123,7 +97,7 @@ Html other_answers(std::span<const Contest> contests)
 Html rates_answer(const ReportInput& input)
 {
     const auto groups = rated_groups(input.files, input.rows);
-    const auto contests = contests_of(groups, input.files.size());
+    const auto contests = structure_contests(groups, input.files.size());
     if (contests.empty()) return {};
     const std::size_t shown = std::min(contests.size(), max_charts);
     Html charts;

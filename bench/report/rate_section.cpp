@@ -66,7 +66,7 @@ BarChart chart_of(const RowGroup& group, std::size_t files)
     const bool tell_device = needs_devices(group, files);
     BarChart chart{fmt::format("Rates of the {} on {}", plural_of(group.kind), scene_title(group)), "Mrays/s", {}};
     for (const ReportRow* row : group.rows)
-        chart.bars.push_back({row->name(), row->kernel + "  " + row->api, tell_device ? device_text(*row, files) : "",
+        chart.bars.push_back({row->name(), row->kernel() + "  " + row->api, tell_device ? device_text(*row, files) : "",
                               api_series(row->row->backend), row->rate->mrays_per_s, row->rate->low, row->rate->high,
                               row->rate->samples, remark_of(*row)});
     return chart;
@@ -129,7 +129,7 @@ Html reason_table(const std::vector<const ReportRow*>& rows, std::size_t files)
     for (const ReportRow* row : rows)
         lists[{file_letter(row->file, files), row->row->status, row->row->reason}] +=
             element("li", {{"class", "unrated"}, {"data-row", row->name()}, {"id", anchor_of(*row)}},
-                    text(fmt::format("{}: {} {}", row->row->scene, row->kernel, row->api)));
+                    text(fmt::format("{}: {} {}", row->row->scene, row->kernel(), row->api)));
     HtmlTable table({{"result"}, {"status"}, {"reason"}, {"rows"}});
     for (const auto& [key, list] : lists)
         table.add({text(key[0]), badge(key[1]), text(key[2]), element("ul", {{"class", "plain"}}, list)});

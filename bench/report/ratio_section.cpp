@@ -53,7 +53,7 @@ void add_ratio(std::vector<RatioGroup>& groups, const ReportInput& input, std::s
     const RatioKey key{file, row.row->scene, row.rays, row.kind(), row_named(input, file, ratio.at("reference")).api};
     auto group = std::ranges::find_if(groups, [&](const RatioGroup& other) { return other.key == key; });
     if (group == groups.end()) group = groups.insert(groups.end(), {key, {}});
-    group->intervals.push_back({row.name(), row.kernel + "  " + row.api, "", api_series(row.row->backend),
+    group->intervals.push_back({row.name(), row.kernel() + "  " + row.api, "", api_series(row.row->backend),
                                 ratio_at(ratio, "ratio"), ratio_at(ratio, "low"), ratio_at(ratio, "high")});
 }
 
@@ -91,12 +91,12 @@ Html tets_over_bvhs(const ReportInput& input)
     }
     for (const ReportRow& row : input.rows) {
         const auto rates = values.at(row.file).at(row.index).find("rates");
-        if (!rates || !rates->find("best_bvh") || !row.kernel.starts_with("cdt ")) continue;
+        if (!rates || !rates->find("best_bvh") || row.structure != Structure::cdt) continue;
         const ResultValue best = rates->at("best_bvh");
         const ReportRow& bvh = row_named(input, row.file, best);
         table.add({text(file_letter(row.file, files)), text(row.row->scene),
                    text(row.kernel_and_rays() + " " + row.api), text(row.device), text(interval_text(*rates)),
-                   text(bvh.kernel + " " + bvh.api)});
+                   text(bvh.kernel() + " " + bvh.api)});
     }
     if (table.empty()) return {};
     return heading("Tets over the fastest BVH") +

@@ -73,16 +73,25 @@ std::string unless_usual(const std::string& value, std::string_view usual)
     return value.empty() || value == usual ? "" : " " + value;
 }
 
-std::string kernel_of(const ResultValue& value, const ResultRow& row)
+/// Sets what tells of the row's kernel.
+void read_kernel(ReportRow& row, const ResultValue& value)
 {
-    const std::string structure = value.at("structure").line(), method = value.at("method").line();
-    const std::string layout = value.at("layout").line();
-    if (layout.starts_with("embree")) return structure + " " + embree_title(method, layout);
-    if (layout == "rt") return structure + " " + layout;
+    read_into(row.structure, value.at("structure"));
+    const std::string method = value.at("method").line(), layout = value.at("layout").line(),
+                      math = value.at("math").line(), &schedule = row.row->schedule;
+    const auto known = std::ranges::find_if(all_kernels(), [&](const KernelId& kernel) {
+        return kernel.structure == row.structure && name_of(kernel.method) == method &&
+               name_of(kernel.layout) == layout && name_of(kernel.math) == math && name_of(kernel.schedule) == schedule;
+    });
+    if (known != all_kernels().end()) row.known_kernel = *known;
+    if (row.known_kernel && !is_portable(*row.known_kernel)) {
+        row.walk = is_embree(known->layout) ? embree_title(method, layout) : layout;
+        return;
+    }
     const auto ray_order = value.find("ray_order");
-    return fmt::format("{} {}{}{}{}{}{}", structure, structure == "cdt" ? method + " " : "", layout,
-                       unless_usual(value.at("math").line(), "exact"), unless_usual(value.at("order").line(), "chains"),
-                       unless_usual(row.schedule, "tiles"), ray_order ? unless_usual(ray_order->line(), "tiles") : "");
+    row.walk = fmt::format("{}{}{}{}{}{}", row.structure == Structure::cdt ? method + " " : "", layout,
+                           unless_usual(math, "exact"), unless_usual(value.at("order").line(), "chains"),
+                           unless_usual(schedule, "tiles"), ray_order ? unless_usual(ray_order->line(), "tiles") : "");
 }
 
 bool same_rays(const ResultScene& a, const ResultScene& b)
@@ -128,7 +137,7 @@ std::vector<ReportRow> report_rows(const ResultFile& result, std::size_t file)
         row.file = file;
         row.index = i;
         row.row = &result.rows[i];
-        row.kernel = kernel_of(items[i], result.rows[i]);
+        read_kernel(row, items[i]);
         row.api = result.rows[i].api();
         row.device = result.head.shown(result.rows[i].device);
         row.rays = items[i].at("rays").line();

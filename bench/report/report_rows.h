@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bench/results/result_file.h"
+#include "bench/rows/contest.h"
 
 #include <optional>
 #include <string>
@@ -23,7 +24,11 @@ struct ReportRow {
     std::size_t file = 0;  ///< its index on the command line
     std::size_t index = 0; ///< in its file
     const ResultRow* row = nullptr;
-    std::string kernel;                           ///< "cdt maria tet80", and whatever differs from the defaults
+    Structure structure = Structure::cdt;
+    std::string walk; ///< "maria tet80", and whatever differs from the defaults
+    /// Empty if this program lacks the kernel: a page shows results of other versions too. That is why its rows are not
+    /// RowRecords, for which read_rows() rejects such a result.
+    std::optional<KernelId> known_kernel;
     std::string api;                              ///< "vulkan", "vulkan:1"
     std::string rays;                             ///< kind
     std::string device;                           ///< the row's, but of the processor the machine's name
@@ -31,11 +36,25 @@ struct ReportRow {
     std::optional<RowRate> rate;                  ///< only of rows with a device
 
     [[nodiscard]] const std::string& name() const { return row->name; }
+    /// "cdt maria tet80".
+    [[nodiscard]] std::string kernel() const { return std::string(name_of(structure)) + " " + walk; }
+    /// "bvh bvh2 on vulkan".
+    [[nodiscard]] std::string label() const { return kernel() + " on " + api; }
     /// For a row with a device. Rows that may be ranked with each other ran on devices of one kind.
     [[nodiscard]] DeviceKind kind() const { return row->device_kind.value(); }
     /// Ends in the kind of rays where they are not primary.
-    [[nodiscard]] std::string kernel_and_rays() const { return rays == "primary" ? kernel : kernel + ", " + rays; }
+    [[nodiscard]] std::string kernel_and_rays() const { return rays == "primary" ? kernel() : kernel() + ", " + rays; }
 };
+
+/// What Contest asks of a row. Precondition: the kernel is known.
+[[nodiscard]] inline const KernelId& kernel_of(const ReportRow& row)
+{
+    return row.known_kernel.value();
+}
+[[nodiscard]] inline std::optional<double> mrays_of(const ReportRow& row)
+{
+    return row.rate ? std::optional(row.rate->mrays_per_s) : std::nullopt;
+}
 
 /// Rows of any file that trace the same rays through the same scene on devices of one kind.
 struct RowGroup {

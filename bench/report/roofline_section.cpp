@@ -25,11 +25,6 @@ struct DeviceRoof {
     std::optional<double> launch_s, max_launch_share;
 };
 
-std::string without_structure(const std::string& kernel)
-{
-    return kernel.rfind("cdt ", 0) == 0 ? kernel.substr(4) : kernel;
-}
-
 /// Scenes of a result get shapes in their order.
 std::size_t scene_number(const ResultFile& file, const std::string& scene)
 {
@@ -41,7 +36,8 @@ void add_row(DeviceRoof& roof, const ReportRow& row, const ReportInput& input)
 {
     const RowRate& rate = *row.rate;
     roof.kind = row.kind();
-    roof.roofline.points.push_back({row.name(), without_structure(row.kernel_and_rays()) + "  " + row.row->scene,
+    const std::string walk = row.rays == "primary" ? row.walk : row.walk + ", " + row.rays; // only tets have steps
+    roof.roofline.points.push_back({row.name(), walk + "  " + row.row->scene,
                                     scene_number(input.files.at(row.file), row.row->scene), *rate.bytes_per_step,
                                     *rate.msteps_per_s, rate.ceiling_bytes_per_s.value_or(0)});
     if (rate.launch_share) roof.max_launch_share = std::max(roof.max_launch_share.value_or(0), *rate.launch_share);

@@ -1,7 +1,7 @@
 #include "bench/rivals/judged_claim.h"
 
+#include "bench/measuring/comparison.h"
 #include "bench/measuring/figures.h"
-#include "bench/rivals/contest.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,25 +14,25 @@ namespace tetrace {
 namespace {
 
 /// Also if the scene could not be loaded.
-bool may_have_tets(const Contest& contest, TetsKind kind)
+bool may_have_tets(const RivalContest& contest, TetsKind kind)
 {
-    return !contest.facts || contest.facts->tets == kind;
+    return !contest.scene || contest.scene->tets == kind;
 }
 
 /// Of that name, and seen as the catalogue's scene is: a file of the user's may have its name.
-bool is_the_scene(const Contest& contest, std::string_view name)
+bool is_the_scene(const RivalContest& contest, std::string_view name)
 {
     const auto scene = std::ranges::find(rival_scenes(), name, &RivalScene::name);
     const bool has_views = scene != rival_scenes().end() && scene->has_own_views;
-    return is_scene(contest.scene, name) && (!contest.facts || has_views == contest.facts->has_own_views);
+    return is_scene(contest.key.scene, name) && (!contest.scene || has_views == contest.scene->has_own_views);
 }
 
-bool is_about(const RivalClaim& claim, const Contest& contest)
+bool is_about(const RivalClaim& claim, const RivalContest& contest)
 {
     const auto is_it = [&](std::string_view name) { return is_the_scene(contest, name); };
-    return contest.place == claim.place && std::ranges::find(claim.rays, contest.rays) != claim.rays.end() &&
+    return contest.place == claim.place && std::ranges::find(claim.rays, contest.key.rays) != claim.rays.end() &&
            (claim.scenes.empty() || std::ranges::any_of(claim.scenes, is_it)) &&
-           (claim.backend.empty() || contest.rows.front()->key.backend == claim.backend) &&
+           (claim.backend.empty() || contest.key.backend == claim.backend) &&
            (!claim.tets || may_have_tets(contest, *claim.tets));
 }
 
@@ -58,39 +58,40 @@ bool wants_slow_walks(const RivalClaim& claim)
 }
 
 /// A walk that was not timed could be the fastest. Only one could, if the claim names its kernel.
-void add_untimed_walks(JudgedClaim& judged, const Contest& contest)
+void add_untimed_walks(JudgedClaim& judged, const RivalContest& contest)
 {
-    for (const RowRecord* row : rows_of(contest, judged.claim->walk)) {
+    for (const RowRecord* row : contest.of(judged.claim->walk)) {
         if (figures_of(*row) || status_of(*row) == Status::unsupported) continue;
-        judged.obstacles.push_back(fmt::format("{}: no rate of {}, which could be faster: {}", title_of(contest),
+        judged.obstacles.push_back(fmt::format("{}: no rate of {}, which could be faster: {}", rays_title(contest.key),
                                                row_label(row->key), reason_without_rate({row})));
         judged.may_refute = judged.may_refute && wants_slow_walks(*judged.claim);
     }
 }
 
 /// A rival that the device has, but that was not timed, could be the fastest.
-void add_untimed_rivals(JudgedClaim& judged, const Contest& contest)
+void add_untimed_rivals(JudgedClaim& judged, const RivalContest& contest)
 {
     const std::size_t before = judged.obstacles.size();
-    for (const RowRecord* row : rows_of(contest, judged.claim->rival))
+    for (const RowRecord* row : contest.of(judged.claim->rival))
         if (!figures_of(*row) && status_of(*row) != Status::unsupported)
-            judged.obstacles.push_back(fmt::format("{}: no rate of {}, which could be faster: {}", title_of(contest),
-                                                   row_label(row->key), reason_without_rate({row})));
+            judged.obstacles.push_back(fmt::format("{}: no rate of {}, which could be faster: {}",
+                                                   rays_title(contest.key), row_label(row->key),
+                                                   reason_without_rate({row})));
     const bool needs_embree = contest.place == DeviceKind::cpu && judged.claim->rival != Rival::our_single;
     if (needs_embree &&
         std::ranges::none_of(contest.rows, [](const RowRecord* row) { return is_embree(row->key.kernel.layout); }))
         judged.obstacles.push_back(
-            fmt::format("{}: Embree, whose rays could be faster, has no rows in this run", title_of(contest)));
+            fmt::format("{}: Embree, whose rays could be faster, has no rows in this run", rays_title(contest.key)));
     if (judged.obstacles.size() > before && wants_slow_walks(*judged.claim)) judged.may_refute = false;
 }
 
-void add_contest(JudgedClaim& judged, const Contest& contest)
+void add_contest(JudgedClaim& judged, const RivalContest& contest)
 {
-    const auto walks = rows_of(contest, judged.claim->walk), rivals = rows_of(contest, judged.claim->rival);
+    const auto walks = contest.of(judged.claim->walk), rivals = contest.of(judged.claim->rival);
     const RowRecord *const walk = fastest(walks), *const rival = fastest(rivals);
     const auto add_missing = [&](std::string_view what, const std::vector<const RowRecord*>& rows) {
         const std::string reason = rows.empty() ? "no such row was selected" : reason_without_rate(rows);
-        judged.obstacles.push_back(fmt::format("{}: no rate of {}: {}", title_of(contest), what, reason));
+        judged.obstacles.push_back(fmt::format("{}: no rate of {}: {}", rays_title(contest.key), what, reason));
     };
     if (walk == nullptr) add_missing(name_of(judged.claim->walk), walks);
     if (rival == nullptr) add_missing(name_of(judged.claim->rival), rivals);
@@ -100,20 +101,20 @@ void add_contest(JudgedClaim& judged, const Contest& contest)
     const auto value = judged.claim->measure == Measure::rate ? std::optional(rate_ratio(*walk, *rival))
                                                               : tracing_until_paid(*walk, *rival);
     if (!value) {
-        judged.obstacles.push_back(fmt::format("{}: a build time is not known", title_of(contest)));
+        judged.obstacles.push_back(fmt::format("{}: a build time is not known", rays_title(contest.key)));
         return;
     }
     judged.numbers.push_back({&contest, walk, rival, *value});
     for (const RowRecord* row : {walk, rival})
         if (is_noisy_row(*row))
             judged.obstacles.push_back(fmt::format("{}: {} is noisy, so measure again on a quieter machine",
-                                                   title_of(contest), row_label(row->key)));
+                                                   rays_title(contest.key), row_label(row->key)));
 }
 
-void add_missing_scenes(JudgedClaim& judged, const std::vector<const Contest*>& contests)
+void add_missing_scenes(JudgedClaim& judged, const std::vector<const RivalContest*>& contests)
 {
     for (const std::string_view name : judged.claim->scenes)
-        if (std::ranges::none_of(contests, [&](const Contest* contest) { return is_the_scene(*contest, name); }))
+        if (std::ranges::none_of(contests, [&](const RivalContest* contest) { return is_the_scene(*contest, name); }))
             judged.missing.emplace_back(name);
     if (contests.empty() && judged.missing.empty())
         judged.obstacles.emplace_back("no row of this run is on such a device, with such rays");
@@ -165,6 +166,14 @@ std::string place_text(const RivalClaim& claim)
     return {};
 }
 
+/// "cdt project half32 packets on openmp (203 Mrays/s, noisy)". Precondition: the row has a rate.
+std::string rated_label(const RowRecord& row)
+{
+    const std::string remarks = remarks_on(row);
+    return fmt::format("{} ({:.4g} Mrays/s{}{})", row_label(row.key), *mrays_of(row), remarks.empty() ? "" : ", ",
+                       remarks);
+}
+
 std::string names_of(const std::vector<RayKind>& kinds)
 {
     std::vector<std::string_view> names;
@@ -175,15 +184,52 @@ std::string names_of(const std::vector<RayKind>& kinds)
 
 } // namespace
 
-JudgedClaim judge(const RivalClaim& claim, const std::vector<Contest>& contests, LeftOut left_out)
+std::vector<ContestScene> contest_scenes(const std::vector<nlohmann::json>& scenes)
+{
+    std::vector<ContestScene> found;
+    for (const nlohmann::json& scene : scenes)
+        found.push_back({scene.at("name"),
+                         scene.at("tets_kind") == name_of(TetsKind::rays) ? TetsKind::rays : TetsKind::cdt,
+                         scene.contains("own_views")});
+    return found;
+}
+
+std::vector<RivalContest> rival_contests(const std::vector<RowRecord>& rows, const std::vector<ContestScene>& scenes)
+{
+    std::vector<const RowRecord*> exact;
+    for (const RowRecord& row : rows)
+        if (!is_portable(row.key.kernel) || row.key.kernel.math == MathMode::exact) exact.push_back(&row);
+    std::vector<RivalContest> contests;
+    for (auto& contest : contests_of(exact)) {
+        const RowRecord& first = *contest.rows.front();
+        const DeviceKind place = first.device.name.empty() ? DeviceKind::cpu : first.device.kind;
+        contests.push_back({std::move(contest), first.key, place, {}});
+        const auto scene = std::ranges::find(scenes, first.key.scene, &ContestScene::name);
+        if (scene != scenes.end()) contests.back().scene = *scene;
+    }
+    return contests;
+}
+
+Estimate rate_ratio(const RowRecord& row, const RowRecord& over)
+{
+    const Comparison comparison = compare_rates(over, row);
+    Estimate estimate{comparison.ratio, {}, {}};
+    if (comparison.interval) {
+        estimate.low = comparison.interval->low;
+        estimate.high = comparison.interval->high;
+    }
+    return estimate;
+}
+
+JudgedClaim judge(const RivalClaim& claim, const std::vector<RivalContest>& contests, LeftOut left_out)
 {
     JudgedClaim judged;
     judged.claim = &claim;
-    std::vector<const Contest*> about;
-    for (const Contest& contest : contests)
+    std::vector<const RivalContest*> about;
+    for (const RivalContest& contest : contests)
         if (is_about(claim, contest)) about.push_back(&contest);
     add_missing_scenes(judged, about);
-    for (const Contest* contest : about)
+    for (const RivalContest* contest : about)
         add_contest(judged, *contest);
     if (!judged.numbers.empty()) add_left_out(judged, left_out);
     if (judged.may_refute && verdict_of(judged, false) == ClaimVerdict::does_not_hold)
@@ -223,11 +269,11 @@ Claim to_claim(const JudgedClaim& judged)
                  fmt::format("Then {} ({}).", claim.then, claim.old->name)};
     for (const ClaimNumber& one : judged.numbers)
         result.evidence += fmt::format("{} {} {}", &one == judged.numbers.data() ? " Now" : ",",
-                                       number_text(claim, one.value), title_of(*one.contest));
+                                       number_text(claim, one.value), rays_title(one.contest->key));
     result.evidence += fmt::format("{} It holds if {}.", judged.numbers.empty() ? "" : ".", rule_of(claim));
     for (const ClaimNumber& one : judged.numbers)
-        result.evidence +=
-            fmt::format(" {}: {} over {}.", title_of(*one.contest), rated_label(*one.walk), rated_label(*one.rival));
+        result.evidence += fmt::format(" {}: {} over {}.", rays_title(one.contest->key), rated_label(*one.walk),
+                                       rated_label(*one.rival));
     for (const std::string& obstacle : judged.obstacles)
         result.evidence += fmt::format(" {}.", obstacle);
     if (!judged.missing.empty())

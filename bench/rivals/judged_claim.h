@@ -1,19 +1,44 @@
 #pragma once
 
 #include "bench/reproduce/claims.h"
-#include "bench/rivals/contest.h"
+#include "bench/rivals/rival_claims.h"
 #include "bench/rows/row_record.h"
 #include "bench/statistics/statistics.h"
 
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace tetrace {
 
+/// What claims ask of a scene.
+struct ContestScene {
+    std::string name;
+    TetsKind tets = TetsKind::rays;
+    bool has_own_views = false; ///< those that the catalogue gives it
+};
+
+/// Those of a result's `scenes`.
+[[nodiscard]] std::vector<ContestScene> contest_scenes(const std::vector<nlohmann::json>& scenes);
+
+/// A contest (contests_of() in bench/measuring/comparison.h), with its rays and what is known of its scene.
+struct RivalContest : Contest<RowRecord> {
+    RowKey key; ///< of its first row
+    DeviceKind place = DeviceKind::cpu;
+    std::optional<ContestScene> scene; ///< empty if it could not be loaded
+};
+
+/// All contests, in the order of their first rows, without our kernels in fast mode. rows: keep their addresses.
+[[nodiscard]] std::vector<RivalContest> rival_contests(const std::vector<RowRecord>& rows,
+                                                       const std::vector<ContestScene>& scenes);
+
+/// The row's rate over the other's, with the interval of compare_rates(). Precondition: both have rates.
+[[nodiscard]] Estimate rate_ratio(const RowRecord& row, const RowRecord& over);
+
 /// A claim's measure in one contest.
 struct ClaimNumber {
-    const Contest* contest = nullptr;
+    const RivalContest* contest = nullptr;
     const RowRecord *walk = nullptr, *rival = nullptr; ///< both with rates
     Estimate value;
 };
@@ -38,7 +63,7 @@ struct LeftOut {
 /// the boundary and there is no obstacle: a rival without a rate could be the fastest, and a noisy row decides nothing.
 /// One number whose interval is on the wrong side refutes it, unless one of its two rows is noisy, or a row is missing
 /// that could put it on the right side. Scenes that were not traced are named, and the others decide.
-[[nodiscard]] JudgedClaim judge(const RivalClaim& claim, const std::vector<Contest>& contests, LeftOut left_out);
+[[nodiscard]] JudgedClaim judge(const RivalClaim& claim, const std::vector<RivalContest>& contests, LeftOut left_out);
 
 /// "0.91 [0.90, 0.92]"; seconds end in their unit, and infinite ones are "never".
 [[nodiscard]] std::string number_text(const RivalClaim& claim, const Estimate& value);

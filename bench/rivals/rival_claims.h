@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/base/enum_names.h"
+#include "bench/rows/contest.h"
 #include "core/device/backend.h"
 #include "core/mesh/scene.h"
 
@@ -9,34 +9,6 @@
 #include <vector>
 
 namespace tetrace {
-
-/// The rows of a walk through tets that a claim is about; the fastest of them represents all.
-enum class Walk {
-    half32,  ///< project on half32, one ray at a time
-    tet64,   ///< project on tet64, one ray at a time
-    maria,   ///< the paper's method, one ray at a time
-    packets, ///< project on half32 in packets
-    single,  ///< every walk of one ray at a time
-    any
-};
-template <>
-inline constexpr auto enum_names<Walk> = names_up_to<Walk::any>("half32", "tet64", "maria", "packets",
-                                                                "the fastest walk of one ray at a time",
-                                                                "the fastest walk");
-
-/// The rows that it is compared with; the fastest of them represents all.
-enum class Rival {
-    our_single,    ///< our BVHs, which trace one ray at a time, in every form
-    embree_single, ///< Embree's single rays
-    embree,        ///< Embree's, with every entry point
-    single,        ///< every BVH that is traced one ray at a time
-    any            ///< every BVH of the device, with every entry point
-};
-template <>
-inline constexpr auto enum_names<Rival> = names_up_to<Rival::any>("our fastest BVH", "Embree's single rays",
-                                                                  "Embree's fastest entry point",
-                                                                  "the fastest BVH of one ray at a time",
-                                                                  "the fastest BVH of the device");
 
 /// A measurement that old figures are from.
 struct OldRun {

@@ -7,6 +7,7 @@
 #include "bench/rows/physical_device.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -45,9 +46,9 @@ std::vector<std::string> old_runs(const std::vector<RivalClaim>& claims)
 }
 
 template <class Numerator, class Denominator>
-PaperCell ratio_cell(const Contest& contest, Numerator walk, Denominator rival)
+PaperCell ratio_cell(const RivalContest& contest, Numerator walk, Denominator rival)
 {
-    const RowRecord *const first = fastest(rows_of(contest, walk)), *const second = fastest(rows_of(contest, rival));
+    const RowRecord *const first = contest.fastest(walk), *const second = contest.fastest(rival);
     if (first == nullptr || second == nullptr) return {};
     return Quantity{rate_ratio(*first, *second), {}};
 }
@@ -64,8 +65,18 @@ PaperCell label_cell(const RowRecord* row)
     return row == nullptr ? PaperCell() : PaperCell(fmt::format("{}, {}", title_of(row->key), device_label(row->key)));
 }
 
+/// "openmp, embree": the APIs of its rows.
+std::string devices_text(const RivalContest& contest)
+{
+    std::vector<std::string> labels;
+    for (const RowRecord* row : contest.rows)
+        if (const std::string label = device_label(row->key); std::ranges::find(labels, label) == labels.end())
+            labels.push_back(label);
+    return fmt::format("{}", fmt::join(labels, ", "));
+}
+
 /// The shares of the rays, in percent, by the first row with an answer.
-std::array<PaperCell, 2> share_cells(const Contest& contest)
+std::array<PaperCell, 2> share_cells(const RivalContest& contest)
 {
     for (const RowRecord* row : contest.rows)
         if (const Traced* result = traced(*row); result != nullptr && result->totals.rays > 0) {
@@ -96,9 +107,9 @@ std::array<PaperCell, 2> paid_cells(const RowRecord* walk, const RowRecord* bvh)
 }
 
 /// How Embree runs on the CPU; empty without a row of it.
-std::string embree_note(const std::vector<Contest>& contests)
+std::string embree_note(const std::vector<RivalContest>& contests)
 {
-    for (const Contest& contest : contests)
+    for (const RivalContest& contest : contests)
         for (const RowRecord* row : contest.rows)
             if (is_embree(row->key.kernel.layout) && !row->device.name.empty())
                 return fmt::format("{}; it traces {} rays in lockstep on this processor.", row->device.driver,
@@ -106,7 +117,7 @@ std::string embree_note(const std::vector<Contest>& contests)
     return {};
 }
 
-PaperTable scenes_table(const std::vector<Contest>& contests)
+PaperTable scenes_table(const std::vector<RivalContest>& contests)
 {
     PaperTable table{
         "rivals-scenes",
@@ -130,12 +141,11 @@ PaperTable scenes_table(const std::vector<Contest>& contests)
          "run, or over the runs of --runs; runs differ by more than samples. Builds include packing; tets from the "
          "cache keep their original build time. 'Paid off' compares the fastest walk with the fastest BVH."}};
     if (const std::string note = embree_note(contests); !note.empty()) table.notes.push_back(note);
-    for (const Contest& contest : contests) {
-        const RowRecord *const walk = fastest(rows_of(contest, Walk::any)), *const bvh =
-                                                                                fastest(rows_of(contest, Rival::any));
+    for (const RivalContest& contest : contests) {
+        const RowRecord *const walk = contest.fastest(Walk::any), *const bvh = contest.fastest(Rival::any);
         const auto paid = paid_cells(walk, bvh), shares = share_cells(contest);
-        table.rows.push_back({contest.scene, std::string(name_of(contest.rays)), contest.device, shares[0], shares[1],
-                              ratio_cell(contest, Walk::any, Rival::any),
+        table.rows.push_back({contest.key.scene, std::string(name_of(contest.key.rays)), devices_text(contest),
+                              shares[0], shares[1], ratio_cell(contest, Walk::any, Rival::any),
                               ratio_cell(contest, Walk::packets, Rival::embree),
                               ratio_cell(contest, Walk::tet64, Rival::single), label_cell(walk), label_cell(bvh),
                               build_cell(walk), build_cell(bvh), paid[0], paid[1]});
@@ -152,18 +162,18 @@ std::string status_text(const RowRecord& row)
     return reason.empty() ? text : text + ": " + reason;
 }
 
-void add_row(PaperTable& table, const Contest& contest, const RowRecord& row, const RowRecord* bvh)
+void add_row(PaperTable& table, const RivalContest& contest, const RowRecord& row, const RowRecord* bvh)
 {
     const auto figures = figures_of(row);
     const auto number = [&](double value) { return figures ? exact_cell(value) : PaperCell(); };
     PaperCell over_bvh;
     if (figures && bvh != nullptr) over_bvh = Quantity{rate_ratio(row, *bvh), {}};
-    table.rows.push_back({contest.scene, std::string(name_of(contest.rays)), title_of(row.key), device_label(row.key),
-                          number(figures ? figures->mrays_per_s : 0),
+    table.rows.push_back({contest.key.scene, std::string(name_of(contest.key.rays)), title_of(row.key),
+                          device_label(row.key), number(figures ? figures->mrays_per_s : 0),
                           number(figures ? 100 * figures->kernel_s.spread() : 0), over_bvh, status_text(row)});
 }
 
-PaperTable rows_table(const std::vector<Contest>& contests)
+PaperTable rows_table(const std::vector<RivalContest>& contests)
 {
     PaperTable table{"rivals-rows",
                      "every row, and its rate over that of the fastest BVH of its device",
@@ -177,8 +187,8 @@ PaperTable rows_table(const std::vector<Contest>& contests)
                       {"over_bvh", "x fastest BVH"},
                       {"status", "status"}},
                      {}};
-    for (const Contest& contest : contests) {
-        const RowRecord* const bvh = fastest(rows_of(contest, Rival::any));
+    for (const RivalContest& contest : contests) {
+        const RowRecord* const bvh = contest.fastest(Rival::any);
         for (const RowRecord* row : contest.rows)
             add_row(table, contest, *row, bvh);
     }
@@ -187,7 +197,8 @@ PaperTable rows_table(const std::vector<Contest>& contests)
 
 } // namespace
 
-PaperTable claims_table(const std::vector<Contest>& contests, LeftOut left_out, const std::vector<RivalClaim>& claims)
+PaperTable claims_table(const std::vector<RivalContest>& contests, LeftOut left_out,
+                        const std::vector<RivalClaim>& claims)
 {
     std::map<DeviceKind, std::vector<Claim>> by_place;
     PaperTable table{
@@ -213,7 +224,7 @@ PaperTable claims_table(const std::vector<Contest>& contests, LeftOut left_out, 
 std::vector<PaperTable> rival_tables(const std::vector<RowRecord>& rows, const std::vector<ContestScene>& scenes,
                                      LeftOut left_out)
 {
-    const auto contests = contests_of(rows, scenes);
+    const auto contests = rival_contests(rows, scenes);
     return {claims_table(contests, left_out), scenes_table(contests), rows_table(contests)};
 }
 

@@ -19,7 +19,7 @@ namespace tetrace {
                                                    const std::vector<ContestScene>& scenes, LeftOut left_out);
 
 /// The first of them.
-[[nodiscard]] PaperTable claims_table(const std::vector<Contest>& contests, LeftOut left_out,
+[[nodiscard]] PaperTable claims_table(const std::vector<RivalContest>& contests, LeftOut left_out,
                                       const std::vector<RivalClaim>& claims = rival_claims());
 
 /// The options of `reproduce rivals` with its scenes, unless some are named: those of rival_scenes() that are available

@@ -368,6 +368,14 @@ std::string kernel_title(const RowKey& key)
     return title;
 }
 
+std::string rays_title(const RowKey& key)
+{
+    std::string title = key.scene;
+    if (key.rays != RayKind::primary) title += fmt::format(", {} rays", name_of(key.rays));
+    if (key.ray_order != RayOrder::tiles) title += fmt::format(" {}", name_of(key.ray_order));
+    return title;
+}
+
 std::string row_label(const RowKey& key)
 {
     return kernel_title(key) + " on " + device_label(key);

@@ -83,6 +83,9 @@ inline constexpr const char* search_scene = "random-tets";
 /// Whether a kernel of the structure has the method.
 [[nodiscard]] bool is_method_of(Structure structure, Method method);
 
+/// The scene, and the rays unless they are primary: "bunny", "bunny, shadow rays", "bunny, ao rays morton".
+[[nodiscard]] std::string rays_title(const RowKey& key);
+
 /// A row's device in tables: "opencl", "opencl:1" for a backend's later devices, "openmp, 1 thread".
 [[nodiscard]] std::string device_label(const RowKey& key);
 

@@ -65,7 +65,7 @@ TEST_F(ReportPage, names_the_fastest_bvh_with_every_ratio_of_tets_to_it)
     json result = with_bvh(2);
     json& rows = result["tetrace"]["rows"];
     json rt = rows.back();
-    rt.update({{"name", "row/rt"}, {"layout", "rt"}, {"backend", "vulkan"}});
+    rt.update({{"name", "row/rt"}, {"layout", "rt"}, {"math", "fast"}, {"backend", "vulkan"}});
     rt["rates"]["mrays_per_s"] = 3.0;
     rows.push_back(rt);
     EXPECT_TRUE(contains(section_of(page_of({result}), "answer"),
@@ -81,6 +81,17 @@ TEST_F(ReportPage, names_the_fastest_bvh_with_every_ratio_of_tets_to_it)
     EXPECT_TRUE(contains(ratios, "bvh rt vulkan")) << ratios;
     rows[1]["rates"]["best_bvh"] = "row/none";
     EXPECT_TRUE(contains(error_of_page(result), "but no row has that name"));
+}
+
+TEST_F(ReportPage, shows_a_kernel_that_this_version_lacks_but_ranks_nothing_with_it)
+{
+    json result = with_bvh(2);
+    json row = result["tetrace"]["rows"].back();
+    row.update({{"name", "row/later"}, {"layout", "bvh99"}});
+    result["tetrace"]["rows"].push_back(row);
+    const std::string page = page_of({result});
+    EXPECT_TRUE(contains(section_of(page, "rates"), "bvh bvh99"));
+    EXPECT_TRUE(contains(section_of(page, "answer"), "no section"));
 }
 
 TEST_F(ReportPage, says_how_many_rays_enter_and_hit)

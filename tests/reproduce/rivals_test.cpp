@@ -57,8 +57,8 @@ JudgedClaim judged(const RivalClaim& claim, const std::vector<RowRecord>& rows, 
 {
     static RivalClaim kept; // a judged claim points to it
     kept = claim;
-    static std::vector<Contest> contests;
-    contests = contests_of(rows, {});
+    static std::vector<RivalContest> contests;
+    contests = rival_contests(rows, {});
     return judge(kept, contests, left_out);
 }
 
@@ -190,7 +190,7 @@ TEST(Rivals, other_rays_are_another_contest)
 {
     auto rows = list(row_of(half32, 1), row_of(bvh2, 2), row_of(bvh2, 0.5));
     rows[2].key.rays = RayKind::random;
-    EXPECT_EQ(contests_of(rows, {}).size(), 2u);
+    EXPECT_EQ(rival_contests(rows, {}).size(), 2u);
     EXPECT_EQ(verdict_of(claim_of(), rows), holds);
     RivalClaim random = claim_of();
     random.rays = {RayKind::random};
@@ -289,7 +289,7 @@ TEST(Rivals, the_old_figure_is_next_to_the_new_one)
     EXPECT_NE(evidence.find("Now 2.00 [1.9"), std::string::npos) << evidence;
     EXPECT_NE(evidence.find("is above 1 "), std::string::npos) << "the rule: " << evidence;
     const auto rows = list(row_of(half32, 1), row_of(bvh2, 2));
-    const PaperTable table = claims_table(contests_of(rows, {}), {}, {claim_of()});
+    const PaperTable table = claims_table(rival_contests(rows, {}), {}, {claim_of()});
     EXPECT_EQ(table.notes, std::vector<std::string>{"a machine: some views on a machine."});
     EXPECT_EQ(std::get<Quantity>(table.rows.at(0).at(1)).ours.value, 1) << "one holds";
 }

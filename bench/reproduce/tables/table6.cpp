@@ -278,14 +278,27 @@ std::vector<RowPair> fastest_pairs(const SceneRun& run)
     return pairs;
 }
 
+namespace {
+
+/// The contest of a row; empty if its device is not known.
+std::optional<Contest<RowRecord>> contest_of(const SceneRun& run, std::size_t row)
+{
+    std::vector<const RowRecord*> rows(run.rows.size());
+    std::ranges::transform(run.rows, rows.begin(), [](const RowRun& one) { return &one; });
+    for (auto& contest : contests_of(rows))
+        if (std::ranges::find(contest.rows, rows[row]) != contest.rows.end()) return std::move(contest);
+    return std::nullopt;
+}
+
+} // namespace
+
 std::optional<RowPair> best_bvh_pair(const SceneRun& run, std::size_t cdt)
 {
-    const Contenders rows = contenders_of(records_of(run.rows));
-    const auto place = std::ranges::find(rows.index, cdt);
-    if (place == rows.index.end()) return std::nullopt;
-    const auto best = best_bvh(rows.list, static_cast<std::size_t>(place - rows.index.begin()));
-    if (!best) return std::nullopt;
-    const std::size_t bvh = rows.index[*best];
+    if (!figures_of(run.rows[cdt])) return std::nullopt;
+    const auto contest = contest_of(run, cdt);
+    const RowRecord* const best = contest ? contest->fastest(Rival::any) : nullptr;
+    if (best == nullptr) return std::nullopt;
+    const auto bvh = static_cast<std::size_t>(static_cast<const RowRun*>(best) - run.rows.data());
     return RowPair{&run, cdt, bvh, paired_ratio(view_seconds(run, cdt), view_seconds(run, bvh), run.sampling)};
 }
 
@@ -300,9 +313,8 @@ std::vector<RowPair> best_bvh_pairs(const SceneRun& run)
 
 std::string bvh_text(const RowPair& pair)
 {
-    const Contenders rows = contenders_of(records_of(pair.run->rows));
-    const auto place = std::ranges::find(rows.index, pair.bvh);
-    return bvh_text(rows.list, static_cast<std::size_t>(place - rows.index.begin()));
+    const RowRecord& bvh = pair.run->rows[pair.bvh];
+    return contest_of(*pair.run, pair.bvh)->bvh_text(bvh, row_label(bvh.key));
 }
 
 std::optional<BreakEven> break_even(const RowPair& pair)

@@ -1,4 +1,4 @@
-#include "bench/rows/best_bvh.h"
+#include "bench/rows/contest.h"
 
 #include "bench/measuring/comparison.h"
 #include "tests/support/row_runs.h"
@@ -10,32 +10,13 @@ using namespace tetrace::test;
 
 namespace {
 
-Contender contender(const std::string& name, const std::string& arena, double rate)
-{
-    return {.name = name,
-            .arena = arena,
-            .is_bvh = name.starts_with("bvh"),
-            .is_embree = name.find("embree") != std::string::npos,
-            .is_single = name.find("packet") == std::string::npos,
-            .mrays_per_s = rate};
-}
-
-const std::vector<Contender> host = {contender("cdt half32", "host", 33),
-                                     contender("cdt half32 packets", "host", 200),
-                                     contender("bvh bvh2", "host", 21),
-                                     contender("bvh cwbvh", "host", 12),
-                                     contender("bvh single on embree", "host", 36),
-                                     contender("bvh packet16 on embree", "host", 110),
-                                     contender("bvh rt", "a GPU", 9000),
-                                     contender("cdt half32 on cuda", "a GPU", 17000),
-                                     contender("cdt half32 on opencl", "opencl:0", 30)};
-
 /// A million rays in that many seconds, and the time of the build.
 RowRecord row_of(Structure structure, Layout layout, Method method, const std::string& backend, DeviceKind kind,
                  double seconds, double build_s = 1)
 {
     RowRecord row;
     row.key = {"bunny", backend, {structure, method, layout}, RayKind::primary, TetOrder::chains, 0};
+    row.device.name = "a device";
     row.device.kind = kind;
     Traced result;
     result.totals.rays = 1'000'000;
@@ -62,20 +43,24 @@ RowRecord embrees(Method method, double seconds)
 
 } // namespace
 
-TEST(BestBvh, is_the_fastest_of_all_entry_points_on_the_same_rays_and_device)
+TEST(Contest, the_fastest_bvh_is_of_all_entry_points_or_one_ray_at_a_time_of_ours_or_of_embrees)
 {
-    EXPECT_EQ(best_bvh(host, 0), 5u);
-    EXPECT_EQ(best_bvh(host, 2), 5u) << "of BVHs too";
-    EXPECT_EQ(best_bvh(host, 5), 5u) << "it is its own";
-    EXPECT_EQ(best_bvh(host, 7), 6u);
-    EXPECT_FALSE(best_bvh(host, 8)) << "that device is without a BVH";
+    auto rows = list(tets_on("openmp", DeviceKind::cpu, 3), bvh2_on("openmp", DeviceKind::cpu, 5),
+                     embrees(Method::single, 3), embrees(Method::packet16, 1), bvh2_on("cuda", DeviceKind::gpu, 0.1));
+    rows[4].device.uuid = "a";
+    const auto contests = contests_of(rows);
+    ASSERT_EQ(contests.size(), 2u);
+    EXPECT_EQ(contests[0].fastest(Walk::any), &rows[0]);
+    EXPECT_EQ(contests[0].fastest(Rival::any), &rows[3]);
+    EXPECT_EQ(contests[0].fastest(Rival::single), &rows[2]);
+    EXPECT_EQ(contests[0].fastest(Rival::our_single), &rows[1]);
+    EXPECT_EQ(contests[0].fastest(Rival::embree_single), &rows[2]);
+    EXPECT_EQ(contests[1].fastest(Rival::any), &rows[4]) << "another device";
+    EXPECT_EQ(contests[1].fastest(Walk::any), nullptr);
 }
 
-TEST(BestBvh, one_ray_at_a_time_is_of_ours_or_of_embrees)
+TEST(Contest, packets_and_streams_are_not_one_ray_at_a_time)
 {
-    EXPECT_EQ(best_bvh(host, 0, BvhKind::our_single), 2u);
-    EXPECT_EQ(best_bvh(host, 0, BvhKind::embree_single), 4u);
-    EXPECT_FALSE(best_bvh(host, 7, BvhKind::embree_single));
     for (const Schedule schedule : {Schedule::tiles, Schedule::native, Schedule::persistent, Schedule::pipeline})
         EXPECT_TRUE(is_single_ray({.schedule = schedule}));
     EXPECT_FALSE(is_single_ray({.schedule = Schedule::packets}));
@@ -84,21 +69,28 @@ TEST(BestBvh, one_ray_at_a_time_is_of_ours_or_of_embrees)
 }
 
 // The rule of every printed ratio: a BVH is called the fastest only if it is, and is named in any case.
-TEST(BestBvh, a_text_names_the_bvh_and_calls_no_other_the_fastest)
+TEST(Contest, a_text_names_the_bvh_and_calls_no_other_the_fastest)
 {
-    for (std::size_t i = 0; i < host.size(); ++i) {
-        if (!host[i].is_bvh) continue;
-        const std::string text = bvh_text(host, i);
-        EXPECT_NE(text.find(host[i].name), std::string::npos) << text;
-        EXPECT_EQ(text.find("the fastest BVH") != std::string::npos, i == 5 || i == 6) << text;
-    }
-    auto slower = host;
-    slower[5].mrays_per_s = 20;
-    EXPECT_EQ(bvh_text(slower, 5), "bvh packet16 on embree");
-    EXPECT_EQ(bvh_text(slower, 4), "the fastest BVH, bvh single on embree");
+    const auto rows = list(tets_on("openmp", DeviceKind::cpu, 3), bvh2_on("openmp", DeviceKind::cpu, 5),
+                           embrees(Method::single, 3), embrees(Method::packet16, 1));
+    const auto contests = contests_of(rows);
+    EXPECT_EQ(contests.at(0).bvh_text(rows[3], row_label(rows[3].key)), "the fastest BVH, bvh packet16 on embree");
+    for (const std::size_t i : {1u, 2u})
+        EXPECT_EQ(contests.at(0).bvh_text(rows[i], row_label(rows[i].key)), row_label(rows[i].key));
 }
 
-TEST(BestBvh, rows_compare_with_embrees_on_the_host_and_with_their_own_bvh_elsewhere)
+TEST(Contest, rows_of_a_scene_that_could_not_be_loaded_are_on_the_host_or_in_no_contest)
+{
+    auto rows =
+        list(tets_on("openmp", DeviceKind::cpu, 3), embrees(Method::single, 3), bvh2_on("cuda", DeviceKind::gpu, 1));
+    for (RowRecord& row : rows)
+        row.device = {};
+    const auto contests = contests_of(rows);
+    ASSERT_EQ(contests.size(), 1u);
+    EXPECT_EQ(contests[0].rows.size(), 2u);
+}
+
+TEST(Contest, rows_compare_with_embrees_on_the_host_and_with_their_own_bvh_elsewhere)
 {
     const auto rows =
         list(tets_on("openmp", DeviceKind::cpu, 2), bvh2_on("openmp", DeviceKind::cpu, 3), embrees(Method::single, 2),
@@ -116,7 +108,7 @@ TEST(BestBvh, rows_compare_with_embrees_on_the_host_and_with_their_own_bvh_elsew
     EXPECT_TRUE(found[0]->interval->contains(0.5));
 }
 
-TEST(BestBvh, a_gpus_rows_compare_with_those_of_all_its_apis)
+TEST(Contest, a_gpus_rows_compare_with_those_of_all_its_apis)
 {
     auto rows = list(tets_on("cuda", DeviceKind::gpu, 1), bvh2_on("cuda", DeviceKind::gpu, 3),
                      bvh2_on("vulkan", DeviceKind::gpu, 2), bvh2_on("vulkan", DeviceKind::gpu, 0.1));
@@ -128,7 +120,7 @@ TEST(BestBvh, a_gpus_rows_compare_with_those_of_all_its_apis)
     EXPECT_EQ(compare_with_best_bvh(rows)[3]->reference, &rows[3]) << "another GPU";
 }
 
-TEST(BestBvh, other_rays_and_rows_without_a_rate_do_not_count)
+TEST(Contest, other_rays_and_rows_without_a_rate_do_not_count)
 {
     auto rows = list(tets_on("openmp", DeviceKind::cpu, 2), bvh2_on("openmp", DeviceKind::cpu, 3),
                      embrees(Method::packet16, 1));
