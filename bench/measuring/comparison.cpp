@@ -15,9 +15,6 @@ namespace tetrace {
 
 namespace {
 
-/// The API that a GPU's other APIs are compared with, if it has the row.
-constexpr const char* preferred_on_gpus = "cuda";
-
 std::vector<std::size_t> hardware_of(const std::vector<RowRecord>& rows)
 {
     std::vector<Device> devices;
@@ -32,7 +29,7 @@ const RowRecord* find_reference(const std::vector<RowRecord>& rows, const std::v
 {
     const RowRecord& row = rows[index];
     const bool on_host = runs_on_host(row.device);
-    const std::string preferred = on_host ? reference_backend().name() : preferred_on_gpus;
+    const std::string preferred = reference_name(on_host ? DeviceKind::cpu : DeviceKind::gpu);
     const RowRecord* first = nullptr;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const RowRecord& other = rows[i];

@@ -70,8 +70,7 @@ RayShares ray_shares(const Traced& traced)
 
 std::optional<Figures> figures_of(const RowRecord& row)
 {
-    const Status status = status_of(row);
-    if ((status != Status::ok && status != Status::flawed) || row.samples_s.empty()) return std::nullopt;
+    if (!has_answers(row) || row.samples_s.empty()) return std::nullopt;
     const RayTotals& totals = traced(row)->totals;
     Figures figures;
     figures.kernel_s = statistics_of(row.samples_s);

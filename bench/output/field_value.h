@@ -19,7 +19,7 @@ struct RowFacts {
     std::optional<Figures> figures;
     // Set only by `bench`, which has all rows and devices.
     std::optional<Comparison> comparison;
-    std::optional<Comparison> best_bvh; ///< with the fastest BVH of its arena
+    std::optional<Comparison> best_bvh; ///< with the fastest BVH of its contest
     std::optional<PaidBuild> paid_build;
     std::optional<double> ratio_to_single;
     std::optional<CopyShares> copy_shares;

@@ -27,7 +27,7 @@ std::vector<StructureContest> structure_contests(const std::vector<RowGroup>& gr
 {
     std::vector<StructureContest> contests;
     for (const RowGroup& group : groups) {
-        if (group.kind == DeviceKind::emulated || group.rays != name_of(RayKind::primary)) continue;
+        if (group.kind == DeviceKind::emulated || group.rays != RayKind::primary) continue;
         for (auto& contest : contests_of(group.rows, [&](const ReportRow&a, const ReportRow&b) {
                  return device_text(a, files) == device_text(b, files);
              })) {
@@ -117,8 +117,8 @@ Html check_answer(const ReportInput& input)
     for (const ReportRow& row : input.rows) {
         if (input.files.at(row.file).head.verb != "check") continue;
         ++rows;
-        right += row.row->status == "ok" || row.row->status == "flawed";
-        if (row.row->status == "wrong") wrong.push_back(&row);
+        right += has_answers(row.row->status);
+        if (row.row->status == Status::wrong) wrong.push_back(&row);
     }
     if (rows == 0) return {};
     Html told = text(fmt::format("{} of {} rows of check are right. ", right, rows));

@@ -38,18 +38,17 @@ std::string count_text(std::size_t count, const char* one, const char* several)
     return fmt::format("{} {}", count, count == 1 ? one : several);
 }
 
-using StatusCounts = std::map<std::string, std::size_t>;
+using StatusCounts = std::map<Status, std::size_t>;
 
 /// "20 rows: 18 ok, 2 flawed".
 std::string status_summary(const StatusCounts& counts)
 {
     std::size_t all = 0;
     std::string statuses;
-    for (const char* const status : {"ok", "flawed", "wrong", "unsupported", "skipped", "error"})
-        if (const auto found = counts.find(status); found != counts.end()) {
-            statuses += fmt::format("{}{} {}", statuses.empty() ? ": " : ", ", found->second, status);
-            all += found->second;
-        }
+    for (const auto& [status, count] : counts) {
+        statuses += fmt::format("{}{} {}", statuses.empty() ? ": " : ", ", count, name_of(status));
+        all += count;
+    }
     return count_text(all, "row", "rows") + statuses;
 }
 

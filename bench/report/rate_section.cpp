@@ -28,7 +28,7 @@ std::string scene_title(const RowGroup& group)
     const ResultScene& scene = group.scene;
     return fmt::format("{}: {} {} of {} at {} × {}, {} rays", scene.name, scene.views.size(),
                        scene.views.size() == 1 ? "view" : "views", scene.camera_set, scene.width, scene.height,
-                       group.rays);
+                       name_of(group.rays));
 }
 
 /// "45 % of these rays enter the domain, and 16 % hit.", of groups that traced the same rays.
@@ -102,7 +102,7 @@ std::string device_text(const ReportRow& row, std::size_t files)
 
 std::string remark_of(const ReportRow& row)
 {
-    std::string text = row.row->status == "flawed" ? row.row->reason : "";
+    std::string text = row.row->status == Status::flawed ? row.row->reason : "";
     if (row.rate && row.rate->noisy) text += text.empty() ? "noisy" : ", noisy";
     return text;
 }
@@ -127,7 +127,7 @@ Html reason_table(const std::vector<const ReportRow*>& rows, std::size_t files)
 {
     std::map<std::array<std::string, 3>, Html> lists;
     for (const ReportRow* row : rows)
-        lists[{file_letter(row->file, files), row->row->status, row->row->reason}] +=
+        lists[{file_letter(row->file, files), std::string(name_of(row->row->status)), row->row->reason}] +=
             element("li", {{"class", "unrated"}, {"data-row", row->name()}, {"id", anchor_of(*row)}},
                     text(fmt::format("{}: {} {}", row->row->scene, row->kernel(), row->api)));
     HtmlTable table({{"result"}, {"status"}, {"reason"}, {"rows"}});

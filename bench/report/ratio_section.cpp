@@ -17,7 +17,7 @@ const char* const how_to_read_ratios =
 struct RatioKey {
     std::size_t file;
     std::string scene;
-    std::string rays; ///< kind
+    RayKind rays;
     DeviceKind kind;
     std::string reference; ///< API
 
@@ -60,8 +60,9 @@ void add_ratio(std::vector<RatioGroup>& groups, const ReportInput& input, std::s
 Html chart_of(const RatioGroup& group, const ReportInput& input)
 {
     const RatioKey& key = group.key;
-    const std::string what =
-        fmt::format("{}, {}{}", key.scene, key.rays == "primary" ? "" : key.rays + " rays, ", plural_of(key.kind));
+    const std::string what = fmt::format(
+        "{}, {}{}", key.scene, key.rays == RayKind::primary ? "" : fmt::format("{} rays, ", name_of(key.rays)),
+        plural_of(key.kind));
     const std::string title = with_letter(what, key.file, input.files.size());
     return figure(title,
                   draw(IntervalChart{fmt::format("Rates over those of {}: {}", key.reference, title),

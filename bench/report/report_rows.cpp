@@ -113,7 +113,7 @@ void order_groups(std::vector<RowGroup>& groups)
     std::vector<RowGroup> ordered;
     while (!groups.empty()) {
         const ResultScene scene = groups.front().scene;
-        const std::string rays = groups.front().rays;
+        const RayKind rays = groups.front().rays;
         const auto others = std::stable_partition(groups.begin(), groups.end(), [&](const RowGroup& group) {
             return same_rays(group.scene, scene) && group.rays == rays;
         });
@@ -140,7 +140,7 @@ std::vector<ReportRow> report_rows(const ResultFile& result, std::size_t file)
         read_kernel(row, items[i]);
         row.api = result.rows[i].api();
         row.device = result.head.shown(result.rows[i].device);
-        row.rays = items[i].at("rays").line();
+        read_into(row.rays, items[i].at("rays"));
         read_shares(row, items[i]);
         row.rate = rate_of(items[i], result.rows[i].samples_s);
         if (row.rate && !row.row->device_kind) items[i].reject("has a rate and no device");

@@ -29,8 +29,8 @@ struct ReportRow {
     /// Empty if this program lacks the kernel: a page shows results of other versions too. That is why its rows are not
     /// RowRecords, for which read_rows() rejects such a result.
     std::optional<KernelId> known_kernel;
-    std::string api;                              ///< "vulkan", "vulkan:1"
-    std::string rays;                             ///< kind
+    std::string api; ///< "vulkan", "vulkan:1"
+    RayKind rays = RayKind::primary;
     std::string device;                           ///< the row's, but of the processor the machine's name
     std::optional<double> enter_share, hit_share; ///< of its rays: that enter the domain, and that hit
     std::optional<RowRate> rate;                  ///< only of rows with a device
@@ -43,7 +43,14 @@ struct ReportRow {
     /// For a row with a device. Rows that may be ranked with each other ran on devices of one kind.
     [[nodiscard]] DeviceKind kind() const { return row->device_kind.value(); }
     /// Ends in the kind of rays where they are not primary.
-    [[nodiscard]] std::string kernel_and_rays() const { return rays == "primary" ? kernel() : kernel() + ", " + rays; }
+    [[nodiscard]] std::string kernel_and_rays() const
+    {
+        return std::string(name_of(structure)) + " " + walk_and_rays();
+    }
+    [[nodiscard]] std::string walk_and_rays() const
+    {
+        return rays == RayKind::primary ? walk : walk + ", " + std::string(name_of(rays));
+    }
 };
 
 /// What Contest asks of a row. Precondition: the kernel is known.
@@ -59,7 +66,7 @@ struct ReportRow {
 /// Rows of any file that trace the same rays through the same scene on devices of one kind.
 struct RowGroup {
     ResultScene scene;
-    std::string rays;
+    RayKind rays = RayKind::primary;
     DeviceKind kind = DeviceKind::cpu;
     std::vector<const ReportRow*> rows; ///< those with a rate, fastest first
 };

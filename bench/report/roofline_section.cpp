@@ -36,8 +36,7 @@ void add_row(DeviceRoof& roof, const ReportRow& row, const ReportInput& input)
 {
     const RowRate& rate = *row.rate;
     roof.kind = row.kind();
-    const std::string walk = row.rays == "primary" ? row.walk : row.walk + ", " + row.rays; // only tets have steps
-    roof.roofline.points.push_back({row.name(), walk + "  " + row.row->scene,
+    roof.roofline.points.push_back({row.name(), row.walk_and_rays() + "  " + row.row->scene,
                                     scene_number(input.files.at(row.file), row.row->scene), *rate.bytes_per_step,
                                     *rate.msteps_per_s, rate.ceiling_bytes_per_s.value_or(0)});
     if (rate.launch_share) roof.max_launch_share = std::max(roof.max_launch_share.value_or(0), *rate.launch_share);

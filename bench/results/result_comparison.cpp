@@ -124,12 +124,12 @@ namespace {
 
 bool is_timed(const ResultRow* row)
 {
-    return row != nullptr && (row->status == "ok" || row->status == "flawed") && !row->samples_s.empty();
+    return row != nullptr && has_answers(row->status) && !row->samples_s.empty();
 }
 
 bool has_failed(const ResultRow* row)
 {
-    return row != nullptr && (row->status == "wrong" || row->status == "error");
+    return row != nullptr && (row->status == Status::wrong || row->status == Status::error);
 }
 
 RowOutcome outcome_of(const ComparedRow& row)
@@ -143,9 +143,8 @@ std::string why_untimed(const char* label, const ResultRow* row)
 {
     if (is_timed(row)) return {};
     if (row == nullptr) return fmt::format("{}: no such row", label);
-    if (!row->reason.empty()) return fmt::format("{}: {}: {}", label, row->status, row->reason);
-    const bool has_rate = row->status == "ok" || row->status == "flawed";
-    return fmt::format("{}: {}", label, has_rate ? "no samples" : row->status);
+    if (!row->reason.empty()) return fmt::format("{}: {}: {}", label, name_of(row->status), row->reason);
+    return fmt::format("{}: {}", label, has_answers(row->status) ? "no samples" : name_of(row->status));
 }
 
 std::vector<ComparedRow> paired_rows(const ResultFile& before, const ResultFile& after, const std::string& filter)

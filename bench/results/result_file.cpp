@@ -154,15 +154,6 @@ std::vector<double> read_samples(const ResultValue& row)
     return samples;
 }
 
-std::string read_status(const ResultValue& value)
-{
-    constexpr std::array known = {"ok", "flawed", "wrong", "unsupported", "skipped", "error"};
-    std::string status = value.line();
-    if (std::ranges::find(known, status) == known.end())
-        value.reject(fmt::format("is '{}', and a row is {}", status, fmt::join(known, ", ")));
-    return status;
-}
-
 /// Results from before the key have it only in the row's name, if it is not tiles: "/schedule:packets/".
 std::string read_schedule(const ResultValue& row)
 {
@@ -183,7 +174,7 @@ ResultRow read_any_row(const ResultValue& value)
     if (row.name.size() > longest_name) value.at("name").reject("is longer than 1,000 bytes, which no row's name is");
     row.backend = value.at("backend").line();
     row.schedule = read_schedule(value);
-    row.status = read_status(value.at("status"));
+    read_into(row.status, value.at("status"));
     if (const auto reason = value.find("reason")) row.reason = printable_text(reason->text());
     if (const auto device = value.find("device")) {
         row.device = device->at("name").line();

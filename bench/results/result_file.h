@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bench/results/result_value.h"
+#include "bench/rows/row_record.h"
 #include "core/device/backend.h"
 
 #include <cstdint>
@@ -43,7 +44,8 @@ struct ResultScene {
 struct ResultRow {
     std::string name;
     std::string scene; ///< empty: exit searches
-    std::string backend, status;
+    std::string backend;
+    Status status = Status::skipped;
     std::string reason;   ///< several lines perhaps; no other control characters
     std::string schedule; ///< how rays come to work items, "tiles" for example
     std::string device, driver;

@@ -97,8 +97,7 @@ Status status_of(const RowRecord& row)
 
 bool has_answers(const RowRecord& row)
 {
-    const Status status = status_of(row);
-    return status == Status::ok || status == Status::flawed;
+    return has_answers(status_of(row));
 }
 
 std::optional<SetupCost> setup_cost(const RowRecord& row)

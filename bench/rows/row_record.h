@@ -141,8 +141,13 @@ struct RowRecord {
     std::string disturbance = {};           ///< why the rate is not to be trusted, see disturbance_text()
 };
 
+/// Whether a row's answers are ok or flawed, so that it may have a rate.
+[[nodiscard]] constexpr bool has_answers(Status status)
+{
+    return status == Status::ok || status == Status::flawed;
+}
+
 [[nodiscard]] Status status_of(const RowRecord& row);
-/// Whether the row's answers are ok or flawed, so that it may have a rate.
 [[nodiscard]] bool has_answers(const RowRecord& row);
 /// What setting a row up cost; empty if that is not known.
 [[nodiscard]] std::optional<SetupCost> setup_cost(const RowRecord& row);

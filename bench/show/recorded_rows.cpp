@@ -13,13 +13,13 @@ namespace {
 /// How the row ended, without its answers. Older results called rows wrong for lost rays.
 Outcome outcome_from(const ResultValue& value, const ResultRow& row)
 {
-    if (row.status == "skipped") return Skipped{Status::skipped, row.reason};
-    if (row.status == "unsupported") return Skipped{Status::unsupported, row.reason};
-    if (row.status == "error") return Failed{ErrorKind::internal, row.reason};
+    if (row.status == Status::skipped) return Skipped{Status::skipped, row.reason};
+    if (row.status == Status::unsupported) return Skipped{Status::unsupported, row.reason};
+    if (row.status == Status::error) return Failed{ErrorKind::internal, row.reason};
     const auto verification = value.find("verification");
     const auto different = verification ? verification->find("different_from_openmp") : std::nullopt;
     const bool is_different = different && different->count() > 0;
-    if (!value.find("counts") || (row.status == "wrong" && !is_different))
+    if (!value.find("counts") || (row.status == Status::wrong && !is_different))
         return Failed{ErrorKind::wrong_result, row.reason};
     return Traced{};
 }
@@ -99,7 +99,7 @@ RowRecord record_from(const ResultValue& value, const ResultRow& row)
     read_into(key.kernel.schedule, ResultValue(schedule, row.name));
     key.kernel = known_kernel(key.kernel, value);
     if (!record.device.name.empty()) require_backend(value);
-    record.device.usable = row.status != "skipped";
+    record.device.usable = row.status != Status::skipped;
     return record;
 }
 
@@ -107,7 +107,8 @@ RowRecord record_from(const ResultValue& value, const ResultRow& row)
 RowRecord search_record_from(const ResultValue& value, const ResultRow& row)
 {
     RowRecord record;
-    if (row.status == "skipped" || row.status == "unsupported" || row.status == "error" || !value.find("verification"))
+    if (row.status == Status::skipped || row.status == Status::unsupported || row.status == Status::error ||
+        !value.find("verification"))
         record.outcome = outcome_from(value, row);
     read_fields(record, value, false);
     RowKey& key = record.key;

@@ -60,13 +60,20 @@ Report check_report(const Checked& checked, const Options& options)
     return report;
 }
 
+bool has_only_foreign_kernels(const std::string& backend)
+{
+    return std::ranges::none_of(all_kernels(), [&](const KernelId& kernel) {
+        return is_portable(kernel) && backend_named(backend).has_kernel(kernel);
+    });
+}
+
 /// Rows of Embree's own BVH and of drivers' are judged only where asked for: they make no claim to break.
 Options with_default_layouts(Options options)
 {
     const auto& required = options.required;
     const bool asked = !options.structures.empty() || !options.methods.empty() || !options.layouts.empty() ||
                        !options.backends.empty() || !options.filter.empty() ||
-                       std::ranges::find(required, "embree") != required.end() ||
+                       std::ranges::any_of(required, has_only_foreign_kernels) ||
                        std::ranges::find(options.schedules, Schedule::pipeline) != options.schedules.end();
     if (asked) return options;
     for (const KernelId& kernel : all_kernels())

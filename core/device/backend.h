@@ -285,4 +285,7 @@ public:
 /// The backend with whose answers all others' are compared; it runs on the host, on one device.
 [[nodiscard]] Backend& reference_backend();
 
+/// The backend whose rates those of the other APIs on one device are compared with, of a kind of devices.
+[[nodiscard]] std::string reference_name(DeviceKind kind);
+
 } // namespace tetrace

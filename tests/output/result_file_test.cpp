@@ -195,7 +195,7 @@ TEST_F(ResultFiles, with_a_value_of_another_kind_names_its_key)
     };
     refused("/rows", nlohmann::json::object(), "tetrace.rows: is not an array");
     refused("/rows/0", 7, "tetrace.rows[0]: is not an object");
-    refused("/rows/0/status", "fine", "tetrace.rows[0].status: is 'fine', and a row is ok, flawed");
+    refused("/rows/0/status", "fine", "tetrace.rows[0].status: is 'fine'; this tetrace knows ok, flawed");
     refused("/rows/0/device/type", "fpga",
             "tetrace.rows[0].device.type: is 'fpga', and a device is cpu, gpu, emulated");
     refused("/rows/0/hit_hash", "00000000000000FF", "tetrace.rows[0].hit_hash: is not a hash");

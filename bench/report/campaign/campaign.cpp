@@ -98,7 +98,7 @@ ReadResult read_one(const std::filesystem::path& path)
     if (const auto load = file.section().find("load"))
         read.result.others = fmt::format("{:.2f}", load->at("others").number());
     for (const ReportRow& row : report_rows(file, 0))
-        if (row.rate) add_rate(read, file, *row.row, row.kernel() + "  " + row.api, row.rays);
+        if (row.rate) add_rate(read, file, *row.row, row.kernel() + "  " + row.api, std::string(name_of(row.rays)));
     for (const ResultRow& row : file.searches)
         add_rate(read, file, row, search_label(row), "searches");
     return read;

@@ -17,10 +17,10 @@ namespace tetrace {
 struct CampaignResult {
     std::filesystem::path path;
     ResultHead head;
-    std::optional<double> day;                   ///< its date, in days since 1970-01-01 UTC; empty if it is none
-    std::map<std::string, std::size_t> statuses; ///< rows and searches by status
-    std::string others;                          ///< processors that other work took while rows were timed
-    std::vector<std::size_t> machines;           ///< of its rates, each once
+    std::optional<double> day;              ///< its date, in days since 1970-01-01 UTC; empty if it is none
+    std::map<Status, std::size_t> statuses; ///< rows and searches by status
+    std::string others;                     ///< processors that other work took while rows were timed
+    std::vector<std::size_t> machines;      ///< of its rates, each once
 };
 
 /// A machine that others are compared with: the CPU of a host with a number of threads, its emulated devices, or a GPU.

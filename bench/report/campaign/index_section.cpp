@@ -66,9 +66,8 @@ Html machine_table(const Campaign& campaign)
 std::string statuses_text(const CampaignResult& result)
 {
     std::vector<std::string> parts;
-    for (const char* const status : {"ok", "flawed", "wrong", "unsupported", "skipped", "error"})
-        if (const auto found = result.statuses.find(status); found != result.statuses.end())
-            parts.push_back(fmt::format("{} {}", found->second, status));
+    for (const auto& [status, count] : result.statuses)
+        parts.push_back(fmt::format("{} {}", count, name_of(status)));
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 
