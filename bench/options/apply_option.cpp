@@ -84,11 +84,11 @@ void set_cameras(Options& options, const std::string& text)
     options.camera_set = *set;
 }
 
-void set_result_file(Options& options, const std::string& text)
+void set_out(Options& options, const std::string& text)
 {
-    if (text.empty()) throw Error(ErrorKind::usage, "--out: the file name is empty");
-    options.out.reset();
-    if (text != "-") options.out = text;
+    set_path("--out", &Options::out)(options, text);
+    const bool is_result = options.verb != Verb::render && options.verb != Verb::report && options.verb != Verb::dump;
+    if (is_result && text == "-") options.out.reset();
 }
 
 } // namespace tetrace

@@ -52,7 +52,7 @@ void append_scenes(Options& options, const std::string& text);
 
 /// A set of tetrace's by its name, or the user's own from a file.
 void set_cameras(Options& options, const std::string& text);
-/// The file of --out; "-" means none.
-void set_result_file(Options& options, const std::string& text);
+/// Of --out; "-" means none for a result.
+void set_out(Options& options, const std::string& text);
 
 } // namespace tetrace

@@ -55,12 +55,4 @@ std::vector<OptionRow> trace_options()
     };
 }
 
-std::vector<OptionRow> dump_options()
-{
-    return {
-        {"Output", "--out", "FOLDER", "Write the files into FOLDER, which is created. Required.", bit(Verb::dump),
-         false, set_path("--out", &Options::out)},
-    };
-}
-
 } // namespace tetrace

@@ -96,7 +96,10 @@ const VerbHelp verb_help[] = {
     {Verb::render, "write pictures",
      "Traces the selected views and writes a picture of each: the surface shaded by its normals, or the steps of each "
      "ray in false colour with a scale bar, side by side for several kinds of tets. The pictures are made by the "
-     "first selected row of each scene.",
+     "first selected row of each scene.\n\n"
+     "The file of --out ends in .png, .exr or .ppm. With several pictures, scene, view and kind are inserted before "
+     "the extension. If it is a folder, the pictures in it are named SCENE-VIEW-KIND.png, or .ppm if OpenImageIO is "
+     "missing (PPM needs no library).",
      "  tetrace render --scene bunny --views 0 --out bunny.png\n"
      "  tetrace render --scene armadillo --picture normals,steps --size 512\n"
      "  tetrace render --scene bunny --tets cdt,rays --picture steps --views 0 --out steps.png\n"},

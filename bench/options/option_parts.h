@@ -32,6 +32,5 @@ inline constexpr unsigned reporting = measuring | bit(Verb::build) | bit(Verb::d
 // Of verbs for those who look into a kernel (debugging_options.cpp).
 [[nodiscard]] std::vector<OptionRow> inspect_options();
 [[nodiscard]] std::vector<OptionRow> trace_options();
-[[nodiscard]] std::vector<OptionRow> dump_options();
 
 } // namespace tetrace

@@ -3,8 +3,10 @@
 #include "bench/options/apply_option.h"
 #include "bench/options/option_parts.h"
 #include "bench/options/option_values.h"
+#include "scenes/catalogue.h"
 
 #include <algorithm>
+#include <fmt/ranges.h>
 
 namespace tetrace {
 
@@ -69,15 +71,25 @@ std::vector<OptionRow> reproduce_options()
     };
 }
 
+/// "atrium, city, terrain": scenes of the catalogue.
+std::string scene_names(bool (*is_named)(const CatalogueEntry&))
+{
+    std::vector<std::string> names;
+    for (const CatalogueEntry& scene : catalogue())
+        if (is_named(scene)) names.push_back(scene.name);
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
 std::vector<OptionRow> scene_options()
 {
     return {
         {"Scenes", "--scene", "SCENE",
          "A name from the catalogue ('tetrace scenes' lists it), a mesh file (PLY, OBJ, OFF, STL, glTF), or a .tet "
          "file. May be repeated, or a list with commas. 'all' is every available scene of the catalogue except "
-         "lattice. atrium@N is atrium with about N triangles; banana, city, terrain, spheres and grass accept @N "
-         "too. lattice:N has 6 N^3 tets, for example 2 GB in layout half32 with N = 138. Default: bunny, armadillo "
-         "and atrium; cubes, banana and atrium if the first two are missing.",
+         "lattice. NAME@N has about N triangles; the name can be " +
+             scene_names([](const CatalogueEntry& scene) { return scene.procedural.has_value(); }) +
+             ". lattice:N has 6 N^3 tets, for example 2 GB in layout half32 with N = 138. Default: bunny, armadillo "
+             "and atrium; cubes, banana and atrium if the first two are missing.",
          building, true, append_scenes},
         {"Scenes", "--repair", "",
          "If triangles of a mesh cross, overlap or touch, cut them along their exact intersections. Without it, "
@@ -206,10 +218,11 @@ std::vector<OptionRow> ray_options()
     const unsigned with_rays = reproducing | bit(Verb::build);
     return {
         {"Rays", "--camera-set", "SET",
-         "'frame', 4 views that the scene fills: special cameras for atrium, city, terrain, spheres and grass, and "
-         "close views of any other mesh; 'smoke', 4 views at 2 radii, in which a closed object fills a sixth of the "
-         "image; 'orbit', 1,282 views on a sphere of 2 radii; 'flight', 1,282 views from 1.2 to 2.9 radii; or a "
-         ".json file with your own cameras (docs/cameras.md). Default: frame.",
+         "'frame', 4 views that the scene fills: close views of a mesh, and special cameras for " +
+             scene_names([](const CatalogueEntry& scene) { return !scene.views.empty(); }) +
+             "; 'smoke', 4 views at 2 radii, in which a closed object fills a sixth of the "
+             "image; 'orbit', 1,282 views on a sphere of 2 radii; 'flight', 1,282 views from 1.2 to 2.9 radii; or a "
+             ".json file with your own cameras (docs/cameras.md). Default: frame.",
          tracing | bit(Verb::build), false, set_cameras},
         {"Rays", "--views", "LIST",
          "Views of the camera set, numbered from 0: numbers, ranges and strides, for example 0,3,10-20 or "
@@ -260,9 +273,10 @@ std::vector<OptionRow> judging_options()
 {
     return {
         {"Measuring", "--samples", "N",
-         "Samples per row, 3 to 10000; a sample traces all selected views together, repeatedly for --sample-time. "
-         "Fewer than 5 give no interval, here and in 'compare'. Default: 10.",
-         bit(Verb::bench), false, set_count("--samples", &Options::samples, 3, 10000)},
+         "Samples, 3 to 10000. Of 'bench' and of rivals for each row: a sample traces all selected views together, "
+         "repeatedly for --sample-time. Of 'reproduce' for each row and view, or batch of searches. Fewer than 5 give "
+         "no interval, here and in 'compare'. Default: 10; of 'reproduce' 5, except for rivals.",
+         bit(Verb::bench) | bit(Verb::reproduce), false, set_count("--samples", &Options::samples, 3, 10000)},
         {"Measuring", "--runs", "N",
          "Measure N times, 1 to 100: each run opens every row's session again, warms it up and takes --samples. "
          "Times differ more between runs than within one (memory, driver, machine), so intervals of ratios then "
@@ -273,37 +287,19 @@ std::vector<OptionRow> judging_options()
          "Minimum duration of a sample on its device, or 4096 passes, if that is less: seconds, or a number "
          "followed by s, up to a minute. A GPU traces all views in less than a millisecond, too short for its "
          "clocks to settle. Passes follow each other without the host, and rates are per pass. 0: a sample is one "
-         "pass. Default: 0.1.",
-         bit(Verb::bench), false, [](Options& o, const std::string& v) { o.sample_s = parse_sample_time(v); }},
-        {"Measuring", "--samples", "N",
-         "Samples for each row and view, or batch of searches, 3 to 10000. Default: 5. For rivals as for 'bench': "
-         "per row, 10.",
-         bit(Verb::reproduce), false, set_count("--samples", &Options::samples, 3, 10000)},
-        {"Measuring", "--sample-time", "TIME",
-         "Minimum duration of a sample of a view, or batch of searches, on its device, or 4096 passes, if that is "
-         "less: seconds, or a number followed by s, up to a minute. 0: a sample is one pass. Default: 0.005, less "
-         "than for 'bench', since each of up to 1,282 views has its own samples; for rivals, whose samples have all "
-         "views, 0.1.",
-         bit(Verb::reproduce), false, [](Options& o, const std::string& v) { o.sample_s = parse_sample_time(v); }},
+         "pass. Default: 0.1; of 'reproduce', which takes samples of each of up to 1,282 views, 0.005, except for "
+         "rivals.",
+         bit(Verb::bench) | bit(Verb::reproduce), false,
+         [](Options& o, const std::string& v) { o.sample_s = parse_sample_time(v); }},
         {"Measuring", "--budget", "TIME",
-         "Wall-clock time for verifying and timing all rows. If not all samples fit, fewer are taken, but at least "
-         "5 (or --samples, if less), since fewer give no interval. If 5 do not fit, the slowest rows are skipped, "
-         "or whole scenes, the last one first, and the result states the budget that they need. One row is always "
-         "measured, unless it needs four budgets; otherwise a run exceeds the budget by at most a quarter. Loading "
-         "scenes and opening devices does not count. --benchmark_repetitions lifts the limit. Default: 4m.",
-         bit(Verb::bench), false, set_seconds("--budget", &Options::budget_s)},
-        {"Measuring", "--budget", "TIME",
-         "Wall-clock time for verifying and timing the rows, shared evenly by the scenes that are left; exit searches "
-         "do "
-         "not count. The slowest rows are skipped until the others fit, and the result names the budget that they "
-         "need. "
-         "For rivals it is the same as for 'bench'. Default: no limit; of rivals 10m.",
-         bit(Verb::reproduce), false, set_seconds("--budget", &Options::budget_s)},
-        {"Measuring", "--budget", "TIME",
-         "Wall-clock time for verifying all rows. The slowest rows are skipped until the others fit, and the result "
-         "names "
-         "the budget that they need. Default: no limit.",
-         bit(Verb::check), false, set_seconds("--budget", &Options::budget_s)},
+         "Wall-clock time for verifying and timing all rows; of 'check' for verifying them. Loading scenes, opening "
+         "devices and exit searches do not count. If not all samples fit, 'bench' takes fewer, but at least 5 (or "
+         "--samples, if less), since fewer give no interval. The slowest rows are skipped until the others fit, or "
+         "whole scenes, the last one first; 'reproduce' shares the time evenly by the scenes that are left. The "
+         "result states the budget that the skipped rows need. One row is always measured, unless it needs four "
+         "budgets; otherwise a run exceeds the budget by at most a quarter. --benchmark_repetitions lifts the limit. "
+         "Default: 4m; of 'check' and 'reproduce' no limit, but of rivals 10m.",
+         sharing, false, set_seconds("--budget", &Options::budget_s)},
         {"Judging", "--require", "BACKEND",
          "Fail with exit code 3 unless this backend has a usable device and, for 'check', has selected rows of "
          "which none is skipped or unsupported.",
@@ -350,7 +346,7 @@ std::vector<OptionRow> make_table()
 {
     std::vector<OptionRow> table;
     for (auto part : {reproduce_options, inspect_options, trace_options, scene_options, row_options, ray_options,
-                      driver_options, judging_options, report_options, sharing_options, output_options, dump_options})
+                      driver_options, judging_options, report_options, sharing_options, output_options})
         for (OptionRow& row : part())
             table.push_back(std::move(row));
     std::stable_partition(table.begin(), table.end(), [](const OptionRow& row) { return row.group != experiments; });

@@ -25,11 +25,12 @@ std::vector<OptionRow> output_options()
          "file; otherwise they replace the table on standard output. Markdown of bench, check, compare, reproduce "
          "and show is what the terminal prints, ready to post. Default: table.",
          reporting, false, [](Options& o, const std::string& v) { o.format = choose<Format>("--format", v); }},
-        {"Output", "--out", "FILE",
-         "Also write the result to FILE. Without --format, its extension sets the format: .json, .csv, .md, or .txt "
-         "for the table. The table still goes to standard output. '-' means standard output instead of a file: it "
-         "gets the result, in the format given by --format.",
-         reporting, false, set_result_file},
+        {"Output", "--out", "PATH",
+         "Write to the file PATH: the result, the picture of 'render', the page of 'report'. For 'dump' it is the "
+         "folder of the files, and is required. Without --format, its extension sets a result's format: .json, .csv, "
+         ".md, or .txt for the table; the table still goes to standard output. '-' means standard output instead of a "
+         "file. Default: none; of 'render' the current folder, of 'report' report.html.",
+         reporting | bit(Verb::render) | bit(Verb::report) | bit(Verb::dump), false, set_out},
         {"Output", "--columns", "LIST",
          "Print only these columns, after the first one, in the tables that have them, named as in CSV and JSON: "
          "mrays_per_s,spread. An unknown name prints the list of valid ones. Default: all, or on a terminal the "
@@ -51,13 +52,6 @@ std::vector<OptionRow> output_options()
          "Also write the result to FILE as JUnit XML, one test case per row; '-' means standard output, instead of "
          "the table. 'merge' accepts it for shards of 'check'. Default: none.",
          bit(Verb::check) | bit(Verb::merge), false, set_path("--junit", &Options::junit)},
-        {"Output", "--out", "FILE",
-         "Write the picture to FILE, which ends in .png, .exr or .ppm. With several pictures, scene, view and kind "
-         "are inserted before the extension. If FILE is a folder, the pictures in it are named SCENE-VIEW-KIND.png, "
-         "or .ppm if OpenImageIO is missing (PPM needs no library). Default: the current folder.",
-         bit(Verb::render), false, set_path("--out", &Options::out)},
-        {"Output", "--out", "FILE", "Write the page to FILE; '-' means standard output. Default: report.html.",
-         bit(Verb::report), false, set_path("--out", &Options::out)},
     };
 }
 
