@@ -1,5 +1,7 @@
 #include "bench/measuring/conformity.h"
 
+#include "bench/terminal/text.h"
+
 #include <fmt/format.h>
 
 namespace tetrace {
@@ -22,11 +24,6 @@ Conformity own_conformity(const RowRecord& row)
     return is_reference ? Conformity::reference : Conformity::uncompared;
 }
 
-std::string rays_text(std::uint64_t rays)
-{
-    return fmt::format("{} {}", rays, rays == 1 ? "ray" : "rays");
-}
-
 /// "contracts" of "contracts; division correctly rounded, denormals kept".
 std::string defects(const SelfTest& test)
 {
@@ -38,7 +35,7 @@ std::string oracle_text(const RowRecord& row)
 {
     const Verdicts& verdicts = traced(row)->verdicts;
     if (verdicts.clean()) return "ok";
-    return fmt::format("{}: {}", name_of(status_of(row)), rays_text(verdicts.wrong + verdicts.lost));
+    return fmt::format("{}: {}", name_of(status_of(row)), counted(verdicts.wrong + verdicts.lost, "ray", "rays"));
 }
 
 } // namespace
@@ -62,7 +59,7 @@ std::string conformity_text(const RowRecord& row)
     switch (conformity) {
     case Conformity::within_ulps: return fmt::format("within {} ulp", result->max_ulps);
     case Conformity::not_exact: return "not exact: " + defects(*row.self_test);
-    case Conformity::wrong: return result != nullptr ? "wrong: " + rays_text(result->different) : "wrong";
+    case Conformity::wrong: return result != nullptr ? "wrong: " + counted(result->different, "ray", "rays") : "wrong";
     case Conformity::uncompared: return oracle_text(row);
     default: return std::string(name_of(conformity));
     }

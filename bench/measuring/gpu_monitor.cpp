@@ -1,6 +1,7 @@
 #include "bench/measuring/gpu_monitor.h"
 
 #include "bench/rows/physical_device.h"
+#include "bench/terminal/text.h"
 #include "core/base/files.h"
 
 #include <algorithm>
@@ -105,8 +106,7 @@ public:
         unsigned long long bits = 0;
         if (library_.throttling == nullptr || library_.throttling(device_, &bits) != success) return state;
         for (const Reason& reason : reasons)
-            if ((bits & reason.bit) != 0)
-                state.throttled += (state.throttled.empty() ? "" : ", ") + std::string(reason.text);
+            if ((bits & reason.bit) != 0) append_item(state.throttled, ", ", reason.text);
         return state;
     }
 

@@ -3,6 +3,7 @@
 #include "backends/openmp/yardstick.h"
 #include "bench/rows/physical_device.h"
 #include "bench/statistics/statistics.h"
+#include "bench/terminal/text.h"
 
 #include <algorithm>
 #include <array>
@@ -129,9 +130,9 @@ void Pulses::judge_rows(std::vector<RowRun>& rows, const std::optional<MachineLo
         const bool feels_load = load && runs_on_host(row.device);
         row.disturbance = disturbance_text(row.pulse_ratio, feels_load ? &*load : nullptr);
         if (row.readings && row.readings->throttled() > 0)
-            row.disturbance +=
-                fmt::format("{}its GPU was throttled in {} of {} samples ({})", row.disturbance.empty() ? "" : "; ",
-                            row.readings->throttled(), row.readings->states.size(), row.readings->reasons);
+            append_item(row.disturbance, "; ",
+                        fmt::format("its GPU was throttled in {} of {} samples ({})", row.readings->throttled(),
+                                    row.readings->states.size(), row.readings->reasons));
     }
 }
 
@@ -177,8 +178,7 @@ std::string disturbance_text(std::optional<double> pulse_ratio, const MachineLoa
     if (pulse_ratio && *pulse_ratio >= noisy_pulse)
         text = fmt::format("calibration during its samples took {:.2f} times its fastest", *pulse_ratio);
     if (load != nullptr && !load->is_quiet())
-        text += fmt::format("{}other processes used {:.2f} of {} CPUs", text.empty() ? "" : "; ", load->others,
-                            load->processors);
+        append_item(text, "; ", fmt::format("other processes used {:.2f} of {} CPUs", load->others, load->processors));
     return text;
 }
 

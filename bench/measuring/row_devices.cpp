@@ -3,6 +3,7 @@
 #include "bench/measuring/figures.h"
 #include "bench/rows/physical_device.h"
 #include "bench/terminal/progress.h"
+#include "bench/terminal/text.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -24,7 +25,7 @@ void number_hardware(std::vector<RowDevice>& devices)
 
 void add_problem(RowDevice& device, const char* what, const std::exception& error)
 {
-    device.problem += fmt::format("{}{}: {}", device.problem.empty() ? "" : "; ", what, error.what());
+    append_item(device.problem, "; ", fmt::format("{}: {}", what, error.what()));
 }
 
 /// Does a part of the work on a device; a failure becomes the device's problem.

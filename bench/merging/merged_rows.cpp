@@ -3,6 +3,7 @@
 #include "bench/measuring/image_record.h"
 #include "bench/show/recorded_rows.h"
 #include "bench/statistics/statistics.h"
+#include "bench/terminal/text.h"
 #include "core/base/error.h"
 #include "core/base/hash.h"
 
@@ -315,7 +316,7 @@ void add_disturbance(RowRecord& row, const RowRecord& part)
 {
     if (part.pulse_ratio) row.pulse_ratio = std::max(row.pulse_ratio.value_or(0), *part.pulse_ratio);
     if (part.disturbance.empty() || row.disturbance.find(part.disturbance) != std::string::npos) return;
-    row.disturbance += (row.disturbance.empty() ? "" : "; ") + part.disturbance;
+    append_item(row.disturbance, "; ", part.disturbance);
 }
 
 } // namespace

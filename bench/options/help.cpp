@@ -324,7 +324,7 @@ std::string verbs_of(const OptionRow& row)
 {
     std::string text;
     for (const VerbHelp& entry : verb_help)
-        if (takes(entry.verb, row)) text += fmt::format("{}{}", text.empty() ? "" : ", ", name_of(entry.verb));
+        if (takes(entry.verb, row)) append_item(text, ", ", name_of(entry.verb));
     return text;
 }
 

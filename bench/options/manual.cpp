@@ -3,6 +3,7 @@
 #include "bench/options/help.h"
 #include "bench/options/identity.h"
 #include "bench/options/option_table.h"
+#include "bench/terminal/text.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -44,7 +45,7 @@ std::string verbs_taking(const OptionRow& row)
 {
     std::string names;
     for (const VerbHelp& verb : verb_helps())
-        if (takes(verb.verb, row)) names += fmt::format("{}{}", names.empty() ? "" : ", ", name_of(verb.verb));
+        if (takes(verb.verb, row)) append_item(names, ", ", name_of(verb.verb));
     return names;
 }
 

@@ -82,9 +82,10 @@ std::string visits_sentences(const std::string& scene, const std::vector<RowReco
         const Traced* result = traced(*row);
         if (result == nullptr || result->visits.rays == 0) continue;
         const auto rays = static_cast<double>(result->visits.rays);
-        text += fmt::format("{}{}: {:.1f} nodes and {:.1f} triangles per ray", text.empty() ? "" : "; ",
-                            kernel_title(row->key), static_cast<double>(result->visits.nodes) / rays,
-                            static_cast<double>(result->visits.triangles) / rays);
+        append_item(text, "; ",
+                    fmt::format("{}: {:.1f} nodes and {:.1f} triangles per ray", kernel_title(row->key),
+                                static_cast<double>(result->visits.nodes) / rays,
+                                static_cast<double>(result->visits.triangles) / rays));
     }
     return text;
 }

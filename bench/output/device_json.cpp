@@ -23,6 +23,34 @@ void set_known(json& object, const char* key, Number number)
     if (number > 0) object[key] = number;
 }
 
+/// Calls visit(key, member) for each number of a device.
+template <class AnyDevice, class Visit>
+void each_number(AnyDevice& device, const Visit& visit)
+{
+    visit("memory_bytes", device.memory_bytes);
+    visit("max_buffer_bytes", device.max_buffer_bytes);
+    visit("max_group_items", device.max_group_items);
+    visit("group_width", device.group_width);
+    visit("timer_period_s", device.timer_period_s);
+    visit("threads", device.threads);
+    visit("max_steps", device.max_steps);
+}
+
+/// The same for what a self-test found.
+template <class AnyTest, class Visit>
+void each_finding(AnyTest& test, const Visit& visit)
+{
+    visit("contracts", test.contracts);
+    visit("denormals_kept", test.denormals_kept);
+    visit("division_ulps", test.division_ulps);
+    visit("square_root_ulps", test.square_root_ulps);
+    visit("sums_right", test.sums_right);
+    visit("comparisons_right", test.comparisons_right);
+    visit("integers_right", test.integers_right);
+    visit("conversions_right", test.conversions_right);
+    visit("bits_kept", test.bits_kept);
+}
+
 } // namespace
 
 json device_json(const Device& device)
@@ -31,13 +59,7 @@ json device_json(const Device& device)
     set_known(object, "implementation", device.implementation);
     set_known(object, "uuid", device.uuid);
     set_known(object, "pci", device.pci);
-    set_known(object, "memory_bytes", device.memory_bytes);
-    set_known(object, "max_buffer_bytes", device.max_buffer_bytes);
-    set_known(object, "max_group_items", device.max_group_items);
-    set_known(object, "group_width", device.group_width);
-    set_known(object, "timer_period_s", device.timer_period_s);
-    set_known(object, "threads", device.threads);
-    set_known(object, "max_steps", device.max_steps);
+    each_number(device, [&](const char* key, const auto& value) { set_known(object, key, value); });
     return object;
 }
 
@@ -52,43 +74,21 @@ Device device_from(const ResultValue& value)
                                       {"pci", &Device::pci}})
         device.*member = printable_line(value.text_at(key));
     device.kind = device_kind_of(value);
-    read_member(device.memory_bytes, value, "memory_bytes");
-    read_member(device.max_buffer_bytes, value, "max_buffer_bytes");
-    read_member(device.max_group_items, value, "max_group_items");
-    read_member(device.group_width, value, "group_width");
-    read_member(device.timer_period_s, value, "timer_period_s");
-    read_member(device.threads, value, "threads");
-    read_member(device.max_steps, value, "max_steps");
+    each_number(device, [&](const char* key, auto& member) { read_member(member, value, key); });
     return device;
 }
 
 json self_test_json(const SelfTest& test)
 {
-    return {{"exact", test.is_exact()},
-            {"contracts", test.contracts},
-            {"denormals_kept", test.denormals_kept},
-            {"division_ulps", test.division_ulps},
-            {"square_root_ulps", test.square_root_ulps},
-            {"sums_right", test.sums_right},
-            {"comparisons_right", test.comparisons_right},
-            {"integers_right", test.integers_right},
-            {"conversions_right", test.conversions_right},
-            {"bits_kept", test.bits_kept},
-            {"text", test.text()}};
+    json object = {{"exact", test.is_exact()}, {"text", test.text()}};
+    each_finding(test, [&](const char* key, const auto& value) { object[key] = value; });
+    return object;
 }
 
 SelfTest self_test_from(const ResultValue& value)
 {
     SelfTest test;
-    read_member(test.contracts, value, "contracts");
-    read_member(test.denormals_kept, value, "denormals_kept");
-    read_member(test.division_ulps, value, "division_ulps");
-    read_member(test.square_root_ulps, value, "square_root_ulps");
-    read_member(test.sums_right, value, "sums_right");
-    read_member(test.comparisons_right, value, "comparisons_right");
-    read_member(test.integers_right, value, "integers_right");
-    read_member(test.conversions_right, value, "conversions_right");
-    read_member(test.bits_kept, value, "bits_kept");
+    each_finding(test, [&](const char* key, auto& member) { read_member(member, value, key); });
     return test;
 }
 

@@ -129,10 +129,7 @@ std::string compilers_of(const ResultValue& programs)
     for (const ResultValue& program : programs.items())
         if (const auto compiler = program.find("compiler"))
             if (std::ranges::find(names, compiler->line()) == names.end()) names.push_back(compiler->line());
-    std::string all;
-    for (const std::string& name : names)
-        all += (all.empty() ? "" : "; ") + name;
-    return all.empty() ? "no compiler" : all;
+    return names.empty() ? "no compiler" : fmt::format("{}", fmt::join(names, "; "));
 }
 
 } // namespace

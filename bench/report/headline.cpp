@@ -1,5 +1,6 @@
 #include "bench/report/charts/bar_chart.h"
 #include "bench/report/sections.h"
+#include "bench/terminal/text.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -85,8 +86,9 @@ Html other_answers(std::span<const StructureContest> contests)
     for (const StructureContest& contest : contests) {
         const auto same = std::ranges::find(lines, contest.device, &std::pair<std::string, std::string>::first);
         std::string& line = (same == lines.end() ? lines.emplace_back(contest.device, "") : *same).second;
-        line += fmt::format("{}{} {:.2f} of that of {}", line.empty() ? "" : "; ", contest.group->scene.name,
-                            contest.ratio(), bvh_text(contest));
+        append_item(
+            line, "; ",
+            fmt::format("{} {:.2f} of that of {}", contest.group->scene.name, contest.ratio(), bvh_text(contest)));
     }
     Html items;
     for (const auto& [device, line] : lines)

@@ -36,7 +36,7 @@ Html pulses_of(const ResultValue& section)
     if (!pulses) return {};
     std::string ratios;
     for (const ResultValue& pulse : pulses->items())
-        ratios += fmt::format("{}{:.2f}", ratios.empty() ? "" : ", ", pulse.at("ratio").number());
+        append_item(ratios, ", ", fmt::format("{:.2f}", pulse.at("ratio").number()));
     return text(ratios);
 }
 
@@ -201,12 +201,6 @@ Html device_table(const ReportInput& input)
                 "CPU.");
 }
 
-std::string text_of_rays(const ResultScene& scene)
-{
-    return fmt::format("{} {} of {}, {} × {}", scene.views.size(), scene.views.size() == 1 ? "view" : "views",
-                       scene.camera_set, scene.width, scene.height);
-}
-
 std::string steps_text(const ResultFile& file, const std::string& scene)
 {
     for (const ResultValue& row : file.section().at("rows").items()) {
@@ -233,11 +227,11 @@ Html scene_table(const ReportInput& input)
     for (const ResultFile& file : input.files)
         for (std::size_t i = 0; i < file.scenes.size(); ++i) {
             const ResultScene& scene = file.scenes[i];
-            if (!seen.insert(scene.name + scene.hash + text_of_rays(scene)).second) continue;
+            if (!seen.insert(scene.name + scene.hash + views_text(scene)).second) continue;
             const ResultValue value = file.section().at("scenes").items().at(i);
             table.add({text(scene.name), text(value.text_at("source")), count_at(value, "tets"),
                        count_at(value, "occlusive_faces"), count_at(value, "free_faces"), text(value.text_at("domain")),
-                       text_element("code", "", value.text_at("switches")), text(text_of_rays(scene)),
+                       text_element("code", "", value.text_at("switches")), text(views_text(scene)),
                        text(file.rows.empty() ? "" : steps_text(file, scene.name)),
                        text_element("code", "", scene.hash)});
         }

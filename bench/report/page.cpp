@@ -5,6 +5,7 @@
 #include "bench/report/html/svg.h"
 #include "bench/report/png.h"
 #include "bench/report/sections.h"
+#include "bench/terminal/text.h"
 
 #include <fmt/format.h>
 
@@ -33,11 +34,6 @@ namespace {
 /// The page loads nothing: no script, no request, only its own styles and embedded pictures.
 const char* const content_policy = "default-src 'none'; style-src 'unsafe-inline'; img-src data:";
 
-std::string count_text(std::size_t count, const char* one, const char* several)
-{
-    return fmt::format("{} {}", count, count == 1 ? one : several);
-}
-
 using StatusCounts = std::map<Status, std::size_t>;
 
 /// "20 rows: 18 ok, 2 flawed".
@@ -49,7 +45,7 @@ std::string status_summary(const StatusCounts& counts)
         statuses += fmt::format("{}{} {}", statuses.empty() ? ": " : ", ", count, name_of(status));
         all += count;
     }
-    return count_text(all, "row", "rows") + statuses;
+    return counted(all, "row", "rows") + statuses;
 }
 
 StatusCounts statuses_of(const ReportInput& input)
@@ -85,7 +81,7 @@ std::string claim_summary(const ReportInput& input)
     const std::size_t all = verdicts[0].second + verdicts[1].second + verdicts[2].second;
     return all == 0 ? ""
                     : fmt::format("{} of the paper: {} hold, {} do not hold, {} not testable here",
-                                  count_text(all, "claim", "claims"), verdicts[0].second, verdicts[1].second,
+                                  counted(all, "claim", "claims"), verdicts[0].second, verdicts[1].second,
                                   verdicts[2].second);
 }
 
@@ -106,7 +102,7 @@ Html page_head(const std::vector<std::string>& facts, const Html& answer)
 
 std::vector<std::string> facts_of(const ReportInput& input)
 {
-    std::vector<std::string> facts = {count_text(input.files.size(), "result", "results")};
+    std::vector<std::string> facts = {counted(input.files.size(), "result", "results")};
     if (!input.rows.empty()) facts.push_back(status_summary(statuses_of(input)));
     if (std::string claims = claim_summary(input); !claims.empty()) facts.push_back(std::move(claims));
     return facts;
@@ -114,13 +110,13 @@ std::vector<std::string> facts_of(const ReportInput& input)
 
 std::vector<std::string> facts_of(const Campaign& campaign)
 {
-    std::vector<std::string> facts = {count_text(campaign.results.size(), "result", "results"),
-                                      count_text(campaign.machines.size(), "machine", "machines"),
+    std::vector<std::string> facts = {counted(campaign.results.size(), "result", "results"),
+                                      counted(campaign.machines.size(), "machine", "machines"),
                                       fmt::format("{} to {} UTC", minute_of(campaign.results.front().head.date),
                                                   minute_of(campaign.results.back().head.date)),
                                       status_summary(statuses_of(campaign))};
     if (!campaign.left_out.empty())
-        facts.push_back(count_text(campaign.left_out.size(), "file left out", "files left out"));
+        facts.push_back(counted(campaign.left_out.size(), "file left out", "files left out"));
     return facts;
 }
 

@@ -25,10 +25,7 @@ const char* const how_to_read_rates =
 
 std::string scene_title(const RowGroup& group)
 {
-    const ResultScene& scene = group.scene;
-    return fmt::format("{}: {} {} of {} at {} × {}, {} rays", scene.name, scene.views.size(),
-                       scene.views.size() == 1 ? "view" : "views", scene.camera_set, scene.width, scene.height,
-                       name_of(group.rays));
+    return rays_title(group.scene, name_of(group.rays));
 }
 
 /// "45 % of these rays enter the domain, and 16 % hit.", of groups that traced the same rays.

@@ -1,5 +1,6 @@
 #include "bench/report/report_rows.h"
 
+#include "bench/terminal/text.h"
 #include "core/base/error.h"
 
 #include <algorithm>
@@ -168,6 +169,17 @@ std::vector<RowGroup> rated_groups(const std::vector<ResultFile>& files, const s
         });
     order_groups(groups);
     return groups;
+}
+
+std::string views_text(const ResultScene& scene)
+{
+    return fmt::format("{} of {} at {} × {}", counted(scene.views.size(), "view", "views"), scene.camera_set,
+                       scene.width, scene.height);
+}
+
+std::string rays_title(const ResultScene& scene, std::string_view rays)
+{
+    return fmt::format("{}: {}, {} rays", scene.name, views_text(scene), rays);
 }
 
 std::string file_letter(std::size_t file, std::size_t files)

@@ -79,6 +79,11 @@ struct RowGroup {
 [[nodiscard]] std::vector<RowGroup> rated_groups(const std::vector<ResultFile>& files,
                                                  const std::vector<ReportRow>& rows);
 
+/// "4 views of smoke at 1024 × 1024".
+[[nodiscard]] std::string views_text(const ResultScene& scene);
+/// "bunny: 4 views of smoke at 1024 × 1024, primary rays".
+[[nodiscard]] std::string rays_title(const ResultScene& scene, std::string_view rays);
+
 /// A result's name on the page: A, B, ... Z, then 27, 28, ...; empty if there is only one.
 [[nodiscard]] std::string file_letter(std::size_t file, std::size_t files);
 

@@ -1,6 +1,7 @@
 #include "bench/reproduce/speed.h"
 
 #include "bench/measuring/figures.h"
+#include "bench/terminal/text.h"
 #include "core/pack/kernel_id.h"
 
 #include <algorithm>
@@ -97,7 +98,7 @@ private:
         for (const TimeRatio& ratio : ratios) {
             if (std::ranges::find(told, ratio.pair) != told.end()) continue;
             told.push_back(ratio.pair);
-            all += (all.empty() ? "" : "; ") + range_text(ratio.pair, ratios);
+            append_item(all, "; ", range_text(ratio.pair, ratios));
         }
         return all;
     }

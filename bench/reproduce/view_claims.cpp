@@ -1,4 +1,5 @@
 #include "bench/reproduce/speed.h"
+#include "bench/terminal/text.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -54,8 +55,7 @@ Claim decided(const ClaimOfRows& what, const RecordedRuns& runs, DeviceKind kind
             }
             noisy = noisy || is_noisy(row);
             rows.push_back(what.numbers_of(steps, seconds, run->sampling));
-            claim.evidence += fmt::format("{}{}: {}", claim.evidence.empty() ? "" : "; ", series_name(row),
-                                          what.text_of(rows.back()));
+            append_item(claim.evidence, "; ", fmt::format("{}: {}", series_name(row), what.text_of(rows.back())));
         }
     if (is_short) {
         claim.evidence = fmt::format("It takes {} views that differ.", min_views);

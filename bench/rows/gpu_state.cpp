@@ -1,5 +1,7 @@
 #include "bench/rows/gpu_state.h"
 
+#include "bench/terminal/text.h"
+
 #include <algorithm>
 
 namespace tetrace {
@@ -33,7 +35,7 @@ GpuSummary GpuReadings::summary() const
 
 void GpuReadings::add_reason(const std::string& reason)
 {
-    if (reasons.find(reason) == std::string::npos) reasons += (reasons.empty() ? "" : ", ") + reason;
+    if (reasons.find(reason) == std::string::npos) append_item(reasons, ", ", reason);
 }
 
 void GpuReadings::add(const GpuReadings& others)

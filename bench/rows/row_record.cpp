@@ -1,5 +1,6 @@
 #include "bench/rows/row_record.h"
 
+#include "bench/terminal/text.h"
 #include "core/base/hash.h"
 
 #include <algorithm>
@@ -14,7 +15,7 @@ std::string traced_reason(const RowRecord& row, const Traced& traced)
 {
     std::string text;
     const auto add = [&](std::uint64_t count, const char* what) {
-        if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
+        if (count > 0) append_item(text, ", ", fmt::format("{} {}", count, what));
     };
     add(traced.different, "different from openmp's");
     add(traced.verdicts.lost, "lost");

@@ -2,6 +2,7 @@
 
 #include "bench/options/name_filter.h"
 #include "bench/rows/scene_work.h"
+#include "bench/terminal/text.h"
 #include "core/base/error.h"
 
 #include <algorithm>
@@ -200,7 +201,7 @@ std::string device_names(const Options& options, const std::vector<Backend*>& ba
     }
     std::string text;
     for (const auto& [name, apis] : names)
-        text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", name, apis);
+        append_item(text, ", ", fmt::format("{} ({})", name, apis));
     return text;
 }
 
@@ -334,7 +335,7 @@ std::string device_label(const RowKey& key)
 {
     const std::string device = numbered_backend(key);
     if (key.threads == 0) return device;
-    return fmt::format("{}, {} {}", device, key.threads, key.threads == 1 ? "thread" : "threads");
+    return fmt::format("{}, {}", device, counted(key.threads, "thread", "threads"));
 }
 
 std::vector<std::string> missing_devices(const Options& options, const std::vector<Backend*>& backends)

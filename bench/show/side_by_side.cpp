@@ -1,6 +1,7 @@
 #include "bench/show/side_by_side.h"
 
 #include "bench/output/compare_report.h"
+#include "bench/terminal/text.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -97,8 +98,9 @@ std::string means_text(const std::vector<ResultComparison>& comparisons)
     std::string text;
     for (std::size_t i = 0; i < comparisons.size(); ++i)
         if (const auto mean = comparisons[i].geometric_mean())
-            text += fmt::format("{}{} / A {:.3f} over {} rows", text.empty() ? "" : ", ", letter(i + 1), *mean,
-                                comparisons[i].count(RowOutcome::compared));
+            append_item(text, ", ",
+                        fmt::format("{} / A {:.3f} over {} rows", letter(i + 1), *mean,
+                                    comparisons[i].count(RowOutcome::compared)));
     return text + ": geometric means of the ratios of medians. Verdicts and intervals: 'tetrace compare' of two.";
 }
 

@@ -154,6 +154,17 @@ std::string with_commas(std::uint64_t value)
     return text;
 }
 
+std::string counted(std::uint64_t count, std::string_view one, std::string_view many)
+{
+    return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+void append_item(std::string& text, std::string_view separator, std::string_view item)
+{
+    if (!text.empty()) text += separator;
+    text += item;
+}
+
 std::string size_text(std::uint64_t bytes)
 {
     const double size = static_cast<double>(bytes);

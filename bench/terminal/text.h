@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace tetrace {
 
@@ -35,6 +36,12 @@ namespace tetrace {
 
 /// A whole number with commas between thousands: 209,397.
 [[nodiscard]] std::string with_commas(std::uint64_t value);
+
+/// "1 row", "1234 rows".
+[[nodiscard]] std::string counted(std::uint64_t count, std::string_view one, std::string_view many);
+
+/// Adds to an enumeration, with the separator unless the item is its first.
+void append_item(std::string& text, std::string_view separator, std::string_view item);
 
 /// A size in MB (10^6 bytes) with one decimal, or kB below 100 kB.
 [[nodiscard]] std::string size_text(std::uint64_t bytes);

@@ -38,8 +38,8 @@ int report_command(const Options& options)
         return 0;
     }
     write_whole(out, page);
-    say(fmt::format("{}: {}, from {} {}", out.string(), size_text(page.size()), files.size(),
-                    files.size() == 1 ? "result" : "results"));
+    say(fmt::format("{}: {}, from {}", out.string(), size_text(page.size()),
+                    counted(files.size(), "result", "results")));
     return 0;
 }
 

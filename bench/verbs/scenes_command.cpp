@@ -57,15 +57,14 @@ std::uint64_t bytes_of(const std::vector<CachedFile>& files)
 /// Each file but the compiled programs, hundreds whose names say nothing: those are one line.
 void add_cache(Sheet& sheet, const std::vector<CachedFile>& files)
 {
-    sheet.line(fmt::format("cache {}: {} {}, {}", cache_directory().string(), files.size(),
-                           files.size() == 1 ? "file" : "files", size_text(bytes_of(files))));
+    sheet.line(fmt::format("cache {}: {}, {}", cache_directory().string(), counted(files.size(), "file", "files"),
+                           size_text(bytes_of(files))));
     std::vector<CachedFile> others, programs;
     for (const CachedFile& file : files)
         (is_program(file) ? programs : others).push_back(file);
     Table table = cache_table(others);
     if (!programs.empty())
-        table.add({fmt::format("{} compiled {}", programs.size(), programs.size() == 1 ? "program" : "programs"),
-                   bytes_of(programs)});
+        table.add({counted(programs.size(), "compiled program", "compiled programs"), bytes_of(programs)});
     if (!files.empty()) sheet.table(table);
 }
 

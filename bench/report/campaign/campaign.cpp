@@ -1,6 +1,7 @@
 #include "bench/report/campaign/campaign.h"
 
 #include "bench/results/result_comparison.h"
+#include "bench/terminal/text.h"
 #include "core/base/error.h"
 
 #include <fmt/format.h>
@@ -43,15 +44,13 @@ std::string machine_name(const ResultFile& file, const ResultRow& row)
     if (*row.device_kind == DeviceKind::gpu) return fmt::format("{} in {}", row.device, host);
     const auto threads = file.section().find("threads");
     if (!threads) return host;
-    return fmt::format("{}, {} {}", host, threads->count(), threads->count() == 1 ? "thread" : "threads");
+    return fmt::format("{}, {}", host, counted(threads->count(), "thread", "threads"));
 }
 
 std::string title_of(const ResultFile& file, const ResultRow& row, const std::string& rays)
 {
     if (row.scene.empty()) return fmt::format("exit searches only, {} (Table 5)", file.search_size);
-    const ResultScene& scene = scene_of(file, row);
-    return fmt::format("{}: {} {} of {} at {} × {}, {} rays", scene.name, scene.views.size(),
-                       scene.views.size() == 1 ? "view" : "views", scene.camera_set, scene.width, scene.height, rays);
+    return rays_title(scene_of(file, row), rays);
 }
 
 /// Nothing for a row without a rate, or whose work nobody can tell.

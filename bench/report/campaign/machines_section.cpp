@@ -1,6 +1,7 @@
 #include "bench/report/campaign/campaign.h"
 #include "bench/report/charts/axis.h"
 #include "bench/report/charts/bar_chart.h"
+#include "bench/terminal/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -114,7 +115,7 @@ Html mean_chart(const Campaign& campaign, const CampaignGroup& group, const std:
                                   {},
                                   {},
                                   {},
-                                  fmt::format("{} {}", mean->works, mean->works == 1 ? "work" : "works")});
+                                  counted(mean->works, "work", "works")});
     return chart.bars.size() < 2 ? Html() : figure("", draw(chart), "");
 }
 
@@ -128,9 +129,7 @@ Html group_html(const Campaign& campaign, const CampaignGroup& group)
     if (!group.hash.empty()) html += note("Scene " + group.hash + ".");
     html += mean_chart(campaign, group, works, sharing) + rate_table(campaign, works, sharing);
     const std::size_t alone = group.works.size() - works.size();
-    if (alone > 0)
-        html += note(fmt::format("{} {} not shown: no other machine did the same.", alone,
-                                 alone == 1 ? "work is" : "works are"));
+    if (alone > 0) html += note(counted(alone, "work is", "works are") + " not shown: no other machine did the same.");
     return html;
 }
 

@@ -95,6 +95,14 @@ double one_two_five(int n)
     return factors[n - 3 * decade] * std::pow(10.0, decade);
 }
 
+std::vector<double> multiples(double step, double first, double last)
+{
+    std::vector<double> values;
+    for (double i = first; i <= last; ++i)
+        values.push_back(i * step);
+    return values;
+}
+
 std::string with_decimals(double value, int decimals)
 {
     std::string digits = fmt::format("{:.{}f}", std::abs(value), decimals);
@@ -144,10 +152,7 @@ Axis Axis::linear(double low, double high, int intervals)
     }
     const double step = round_step((high - low) / std::max(intervals, 1));
     const double first = std::floor(low / step + 1e-9), last = std::ceil(high / step - 1e-9);
-    std::vector<double> ticks;
-    for (double i = first; i <= last; ++i)
-        ticks.push_back(i * step);
-    return between(false, std::move(ticks));
+    return between(false, multiples(step, first, last));
 }
 
 Axis Axis::from_zero(double high, int intervals)
@@ -165,10 +170,7 @@ Axis Axis::dates(double low, double high)
     const double step = step_of_dates(high - low);
     const double first = std::floor(low / step + 1e-9);
     const double last = std::max(std::ceil(high / step - 1e-9), first + 1);
-    std::vector<double> ticks;
-    for (double i = first; i <= last; ++i)
-        ticks.push_back(i * step);
-    Axis axis = between(false, std::move(ticks));
+    Axis axis = between(false, multiples(step, first, last));
     axis.dates_ = true;
     return axis;
 }

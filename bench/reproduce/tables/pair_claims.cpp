@@ -1,5 +1,6 @@
 #include "bench/reproduce/speed.h"
 #include "bench/reproduce/tables/tables.h"
+#include "bench/terminal/text.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -76,56 +77,65 @@ std::string pair_evidence(const RowPair& pair)
         pair.ratio.highest, 100 * pair.ratio.won, range(cdt_frames), range(bvh_frames), faster_bvh_text(pair));
 }
 
+/// What decides a claim: ratios that are all above 1 if it holds.
+class Findings {
+public:
+    /// by: the pairs that the ratio is of; separator: of the evidence's items.
+    void add(const Estimate& ratio, std::initializer_list<const RowPair*> by, const char* separator,
+             const std::string& item)
+    {
+        ratios_.push_back(ratio);
+        noisy_ = noisy_ || std::ranges::any_of(by, [](const RowPair* pair) { return is_noisy(*pair); });
+        append_item(evidence_, separator, item);
+    }
+    /// without: the evidence if there are no ratios; end: of the evidence if there are. not_compared: why nothing may
+    /// be decided.
+    [[nodiscard]] Claim decide(Claim claim, const std::string& without, const std::string& end = "",
+                               const std::string& not_compared = "") const
+    {
+        claim.evidence = ratios_.empty() ? without : evidence_ + end + not_compared;
+        if (ratios_.empty() || !not_compared.empty()) return claim;
+        claim.verdict = judge_above(ratios_, 1);
+        withdraw_if_noisy(claim, noisy_);
+        return claim;
+    }
+
+private:
+    std::vector<Estimate> ratios_;
+    std::string evidence_;
+    bool noisy_ = false;
+};
+
 Claim faster_claim(const SceneRuns& runs, const paper::PairOutcome& outcome, DeviceKind kind)
 {
     const char *const first = outcome.cdt_is_faster ? "CDT" : "BVH", *const second =
                                                                          outcome.cdt_is_faster ? "BVH" : "CDT";
-    Claim claim{fmt::format("table6-{}-is-faster-on-{}-{}", outcome.cdt_is_faster ? "cdt" : "bvh", outcome.scene,
-                            name_of(kind)),
-                fmt::format("on {}, the {} is faster than the {} on {}", on_text(kind), first, second, outcome.scene)};
+    const Claim claim{
+        fmt::format("table6-{}-is-faster-on-{}-{}", outcome.cdt_is_faster ? "cdt" : "bvh", outcome.scene,
+                    name_of(kind)),
+        fmt::format("on {}, the {} is faster than the {} on {}", on_text(kind), first, second, outcome.scene)};
     const SceneRun* const run = judged_run(runs, outcome.scene);
-    std::vector<Estimate> ratios;
-    bool noisy = false;
-    for (const RowPair& pair : papers_pairs(run, kind)) {
-        ratios.push_back(outcome.cdt_is_faster ? pair.ratio.median : inverse(pair.ratio.median));
-        noisy = noisy || is_noisy(pair);
-        claim.evidence += (claim.evidence.empty() ? "" : " ") + pair_evidence(pair);
-    }
-    if (ratios.empty()) {
-        claim.evidence = fmt::format("{} on {}.", no_pair_text(kind), outcome.scene);
-        return claim;
-    }
-    if (!run->likeness.is_compared()) {
-        claim.evidence += fmt::format(" It is {}", run->likeness.reason);
-        return claim;
-    }
-    claim.verdict = judge_above(ratios, 1);
-    withdraw_if_noisy(claim, noisy);
-    return claim;
+    Findings found;
+    for (const RowPair& pair : papers_pairs(run, kind))
+        found.add(outcome.cdt_is_faster ? pair.ratio.median : inverse(pair.ratio.median), {&pair}, " ",
+                  pair_evidence(pair));
+    const bool is_compared = run == nullptr || run->likeness.is_compared();
+    return found.decide(claim, fmt::format("{} on {}.", no_pair_text(kind), outcome.scene), "",
+                        is_compared ? "" : fmt::format(" It is {}", run->likeness.reason));
 }
 
 /// Ours, not the paper's: tets for rays are faster than the fastest BVH of the device.
 Claim rays_claim(const SceneRun& run, DeviceKind kind)
 {
-    Claim claim{fmt::format("table6-tets-for-rays-are-faster-on-{}-{}", run.build.scene, name_of(kind)),
-                fmt::format("not the paper's: on {}, a walk through tets for rays is faster than the fastest BVH on {}",
-                            kind == DeviceKind::gpu ? "a GPU" : "this CPU", run.build.scene)};
-    std::vector<Estimate> ratios;
-    bool noisy = false;
-    for (const RowPair& pair : best_bvh_pairs(run)) {
-        if (run.rows[pair.cdt].device.kind != kind) continue;
-        ratios.push_back(pair.ratio.median);
-        noisy = noisy || is_noisy(pair);
-        claim.evidence += (claim.evidence.empty() ? "" : " ") + pair_evidence(pair);
-    }
-    if (ratios.empty()) {
-        claim.evidence = fmt::format("No {} has rates of tets for rays and of a BVH on {}.",
-                                     kind == DeviceKind::gpu ? "GPU" : "CPU", run.build.scene);
-        return claim;
-    }
-    claim.verdict = judge_above(ratios, 1);
-    withdraw_if_noisy(claim, noisy);
-    return claim;
+    const Claim claim{
+        fmt::format("table6-tets-for-rays-are-faster-on-{}-{}", run.build.scene, name_of(kind)),
+        fmt::format("not the paper's: on {}, a walk through tets for rays is faster than the fastest BVH on {}",
+                    kind == DeviceKind::gpu ? "a GPU" : "this CPU", run.build.scene)};
+    Findings found;
+    for (const RowPair& pair : best_bvh_pairs(run))
+        if (run.rows[pair.cdt].device.kind == kind) found.add(pair.ratio.median, {&pair}, " ", pair_evidence(pair));
+    return found.decide(claim, fmt::format("No {} has rates of tets for rays and of a BVH on {}.",
+                                           kind == DeviceKind::gpu ? "GPU" : "CPU", run.build.scene));
 }
 
 /// Those of the paper's scenes that its claims may be decided by, in its order.
@@ -153,11 +163,10 @@ Amplitude amplitude_of(std::vector<double> seconds)
 /// "The CDT's timings have the larger amplitude": its amplitude over the BVH's is above 1.
 Claim amplitude_claim(const SceneRuns& runs, DeviceKind kind)
 {
-    Claim claim{
+    const Claim claim{
         fmt::format("table6-cdt-has-the-larger-amplitude-{}", name_of(kind)),
         fmt::format("on {}, the CDT's times over the views have a larger amplitude than the BVH's", on_text(kind))};
-    std::vector<Estimate> ratios;
-    bool noisy = false;
+    Findings found;
     for (const SceneRun* run : compared_runs(runs))
         for (const RowPair& pair : papers_pairs(run, kind)) {
             const auto cdt_s = view_seconds(*run, pair.cdt), bvh_s = view_seconds(*run, pair.bvh);
@@ -168,20 +177,12 @@ Claim amplitude_claim(const SceneRuns& runs, DeviceKind kind)
                 ratio.low = cdt.inner / bvh.whole;
                 ratio.high = cdt.whole / bvh.inner;
             }
-            ratios.push_back(ratio);
-            noisy = noisy || is_noisy(pair);
-            claim.evidence += fmt::format("{}{} {}: max over min {:.3g} for the CDT, {:.3g} for bvh2",
-                                          claim.evidence.empty() ? "" : "; ", run->build.scene, device_of(pair),
-                                          cdt.whole, bvh.whole);
+            found.add(ratio, {&pair}, "; ",
+                      fmt::format("{} {}: max over min {:.3g} for the CDT, {:.3g} for bvh2", run->build.scene,
+                                  device_of(pair), cdt.whole, bvh.whole));
         }
-    if (ratios.empty()) {
-        claim.evidence = no_pair_text(kind) + " on a scene similar to the paper's.";
-        return claim;
-    }
-    claim.verdict = judge_above(ratios, 1);
-    claim.evidence += ". Bounds leave out the extreme view at either end.";
-    withdraw_if_noisy(claim, noisy);
-    return claim;
+    return found.decide(claim, no_pair_text(kind) + " on a scene similar to the paper's.",
+                        ". Bounds leave out the extreme view at either end.");
 }
 
 Estimate quotient(const Estimate& a, const Estimate& b)
@@ -201,32 +202,22 @@ Estimate time_ratio(const RowPair& pair)
 /// by more than the BVH's.
 Claim size_claim(const SceneRuns& runs, DeviceKind kind)
 {
-    Claim claim{
+    const Claim claim{
         fmt::format("table6-bvh-depends-less-on-size-{}", name_of(kind)),
         fmt::format("on {}, the BVH's cost depends less than the CDT's on the size of the input", on_text(kind))};
     const auto scenes = compared_runs(runs);
-    std::vector<Estimate> ratios;
-    bool noisy = false;
+    Findings found;
     if (scenes.size() > 1)
         for (const RowPair& small : papers_pairs(scenes.front(), kind))
             for (const RowPair& large : papers_pairs(scenes.back(), kind)) {
                 if (device_of(small) != device_of(large)) continue;
                 const Estimate before = time_ratio(small), after = time_ratio(large);
-                ratios.push_back(quotient(before, after));
-                noisy = noisy || is_noisy(small) || is_noisy(large);
-                claim.evidence +=
-                    fmt::format("{}{}: bvh2 takes {} of the CDT's time on {} and {} on {}",
-                                claim.evidence.empty() ? "" : "; ", device_of(small), estimate_text(before),
-                                small.run->build.scene, estimate_text(after), large.run->build.scene);
+                found.add(quotient(before, after), {&small, &large}, "; ",
+                          fmt::format("{}: bvh2 takes {} of the CDT's time on {} and {} on {}", device_of(small),
+                                      estimate_text(before), small.run->build.scene, estimate_text(after),
+                                      large.run->build.scene));
             }
-    if (ratios.empty()) {
-        claim.evidence = no_pair_text(kind) + " on two scenes similar to the paper's.";
-        return claim;
-    }
-    claim.verdict = judge_above(ratios, 1);
-    claim.evidence += ".";
-    withdraw_if_noisy(claim, noisy);
-    return claim;
+    return found.decide(claim, no_pair_text(kind) + " on two scenes similar to the paper's.", ".");
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 #include "bench/measuring/figures.h"
 #include "bench/reproduce/speed.h"
 #include "bench/reproduce/tables/tables.h"
+#include "bench/terminal/text.h"
 
 #include <fmt/format.h>
 
@@ -79,10 +80,11 @@ Claim mean_rate_claim(const SceneRuns& runs, paper::Place place)
         const SceneRun* const run = judged_run(runs, figures.scene);
         const auto rate = run != nullptr ? best_rate(*run, place) : std::nullopt;
         if (rate)
-            claim.evidence += fmt::format("{}{} {:.4g} Mrays/s, the paper's {}", claim.evidence.empty() ? "" : "; ",
-                                          figures.scene, rate->mrays.value, figures.mrays(place));
+            append_item(claim.evidence, "; ",
+                        fmt::format("{} {:.4g} Mrays/s, the paper's {}", figures.scene, rate->mrays.value,
+                                    figures.mrays(place)));
         if (!rate || !run->likeness.is_compared()) {
-            missing += (missing.empty() ? "" : "; ") + missing_text(run, figures.scene, device);
+            append_item(missing, "; ", missing_text(run, figures.scene, device));
             continue;
         }
         mean.value += rate->mrays.value / scenes;

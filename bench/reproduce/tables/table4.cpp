@@ -127,7 +127,7 @@ MethodCounts method_counts(const std::vector<MethodRow>& rows, Method method, st
         sum.sampling = std::max(sum.sampling, row.run->sampling);
         sum.rays += traced(run)->verdicts.rays;
         sum.flawed += traced(run)->verdicts.wrong + traced(run)->verdicts.lost;
-        sum.scenes += (sum.scenes.empty() ? "" : ", ") + row.run->build.label;
+        append_item(sum.scenes, ", ", row.run->build.label);
     }
     return sum;
 }
@@ -164,8 +164,7 @@ Claim min_claim(const std::vector<MethodRow>& rows, std::size_t population)
         const MethodCounts counts = method_counts(rows, method, population);
         if (counts.counts.empty()) return std::nullopt;
         const Estimate mean = counts.mean();
-        claim.evidence +=
-            fmt::format("{}{}: {}", claim.evidence.empty() ? "" : "; ", name_of(method), estimate_text(mean));
+        append_item(claim.evidence, "; ", fmt::format("{}: {}", name_of(method), estimate_text(mean)));
         return mean;
     };
     const auto maria = mean_of(Method::maria);
@@ -188,8 +187,7 @@ Claim next_claim(const std::vector<MethodRow>& rows, std::size_t population)
         const MethodCounts counts = method_counts(rows, method, population);
         if (counts.counts.empty()) continue;
         const Estimate mean = counts.mean();
-        claim.evidence +=
-            fmt::format("{}{}: {}", claim.evidence.empty() ? "" : "; ", name_of(method), estimate_text(mean));
+        append_item(claim.evidence, "; ", fmt::format("{}: {}", name_of(method), estimate_text(mean)));
         if (method == Method::ms06)
             next = mean;
         else

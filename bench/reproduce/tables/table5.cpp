@@ -107,8 +107,9 @@ Claim exact_claim(const SearchRun& run)
     if (rows == 0) return claim;
     const bool is_whole_set = run.size.count() >= SearchSize{}.count();
     claim.verdict = judge_none({static_cast<double>(wrong + lost), {}, {}, is_whole_set});
-    claim.evidence = fmt::format("{} searches by {} {}: {} wrong, {} lost, {} ties.", with_commas(searches), rows,
-                                 rows == 1 ? "row" : "rows", with_commas(wrong), with_commas(lost), with_commas(ties));
+    claim.evidence =
+        fmt::format("{} searches by {}: {} wrong, {} lost, {} ties.", with_commas(searches),
+                    counted(rows, "row", "rows"), with_commas(wrong), with_commas(lost), with_commas(ties));
     if (claim.verdict == ClaimVerdict::not_testable)
         claim.evidence += fmt::format(" Fewer searches per row than the paper's {} decide nothing.",
                                       with_commas(SearchSize{}.count()));
