@@ -118,12 +118,9 @@ ShownRay read_ray(const ResultValue& value)
 
 KernelId read_kernel(const ResultValue& trace)
 {
-    const std::string method = trace.at("method").line(), layout = trace.at("layout").line(),
-                      math = trace.at("math").line();
-    for (const KernelId& kernel : all_kernels())
-        if (method == name_of(kernel.method) && layout == name_of(kernel.layout) && math == name_of(kernel.math) &&
-            kernel.schedule == Schedule::tiles)
-            return kernel;
+    if (const auto kernel = kernel_named(trace.at("method").line(), trace.at("layout").line(), trace.at("math").line(),
+                                         name_of(Schedule::tiles)))
+        return *kernel;
     trace.at("method").reject("and its layout and math are not a kernel of this tetrace");
 }
 

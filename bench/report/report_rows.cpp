@@ -1,5 +1,6 @@
 #include "bench/report/report_rows.h"
 
+#include "bench/rows/rows.h"
 #include "bench/terminal/text.h"
 #include "core/base/error.h"
 
@@ -80,13 +81,9 @@ void read_kernel(ReportRow& row, const ResultValue& value)
     read_into(row.structure, value.at("structure"));
     const std::string method = value.at("method").line(), layout = value.at("layout").line(),
                       math = value.at("math").line(), &schedule = row.row->schedule;
-    const auto known = std::ranges::find_if(all_kernels(), [&](const KernelId& kernel) {
-        return kernel.structure == row.structure && name_of(kernel.method) == method &&
-               name_of(kernel.layout) == layout && name_of(kernel.math) == math && name_of(kernel.schedule) == schedule;
-    });
-    if (known != all_kernels().end()) row.known_kernel = *known;
+    row.known_kernel = kernel_named(method, layout, math, schedule);
     if (row.known_kernel && !is_portable(*row.known_kernel)) {
-        row.walk = is_embree(known->layout) ? embree_title(method, layout) : layout;
+        row.walk = is_embree(row.known_kernel->layout) ? embree_title(method, layout) : layout;
         return;
     }
     const auto ray_order = value.find("ray_order");

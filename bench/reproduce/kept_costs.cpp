@@ -1,9 +1,9 @@
 #include "bench/reproduce/kept_costs.h"
 
+#include "bench/rows/json_numbers.h"
+
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
-#include <utility>
 
 namespace tetrace {
 
@@ -11,46 +11,61 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* entry_key = "yardstick";
+constexpr const char *yardstick_key = "yardstick", *cost_key = "setup";
+
+/// The entries of the journal that have the key, whose value names them. what: they are, in words.
+template <class Value>
+std::map<std::string, Value> kept_values(const Journal* journal, const char* key, const char* what,
+                                         Value (*read)(const json&))
+{
+    std::map<std::string, Value> values;
+    if (journal == nullptr) return values;
+    const auto reject = [&] { journal->reject(fmt::format("{} in the journal is damaged", what)); };
+    for (const json& entry : journal->entries()) {
+        if (!entry.contains(key)) continue;
+        try {
+            values[entry[key].get<std::string>()] = read(entry);
+        } catch (const json::exception&) {
+            reject();
+        } catch (const std::logic_error&) {
+            reject();
+        }
+    }
+    return values;
+}
 
 json entry_of(const std::string& device, const Yardstick& yardstick)
 {
     json copies = json::array(); // pairs of bytes and rate
     for (const CopyRate& copy : yardstick.copies)
         copies.push_back({copy.bytes, copy.bytes_per_s});
-    return {{entry_key, device},
+    return {{yardstick_key, device},
             {"copy_bytes_per_s", yardstick.copy_bytes_per_s},
             {"launch_s", yardstick.launch_s},
             {"copies", std::move(copies)}};
 }
 
-bool is_positive(const json& entry, const char* key)
+Yardstick yardstick_from(const json& entry)
 {
-    return entry.contains(key) && entry[key].is_number() && std::isfinite(entry[key].get<double>()) && entry[key] > 0;
-}
-
-bool is_copy(const json& copy)
-{
-    return copy.is_array() && copy.size() == 2 && copy[0].is_number_unsigned() && copy[1].is_number() &&
-           std::isfinite(copy[1].get<double>()) && copy[1] >= 0;
-}
-
-bool is_whole_entry(const json& entry)
-{
-    if (!entry[entry_key].is_string() || !is_positive(entry, "copy_bytes_per_s") || !is_positive(entry, "launch_s"))
-        return false;
-    const auto copies = entry.find("copies");
-    return copies != entry.end() && copies->is_array() && copies->size() == Yardstick{}.copies.size() &&
-           std::ranges::all_of(*copies, is_copy);
-}
-
-Yardstick yardstick_of(const json& entry)
-{
-    Yardstick yardstick{entry["copy_bytes_per_s"], entry["launch_s"]};
-    std::ranges::transform(entry["copies"], yardstick.copies.begin(), [](const json& copy) {
-        return CopyRate{copy[0], copy[1]};
+    Yardstick yardstick{amount_from(entry.at("copy_bytes_per_s")), amount_from(entry.at("launch_s"))};
+    const json& copies = entry.at("copies");
+    if (yardstick.copy_bytes_per_s == 0 || yardstick.launch_s == 0 || copies.size() != yardstick.copies.size())
+        throw std::domain_error("not measured");
+    std::ranges::transform(copies, yardstick.copies.begin(), [](const json& copy) {
+        return CopyRate{count_from<std::uint64_t>(copy.at(0)), amount_from(copy.at(1))};
     });
     return yardstick;
+}
+
+json entry_of(const std::string& row, const SetupCost& cost)
+{
+    return {{cost_key, row}, {"build_s", cost.build_s}, {"pack_s", cost.pack_s}, {"bytes", cost.bytes}};
+}
+
+SetupCost cost_from(const json& entry)
+{
+    return {amount_from(entry.at("build_s")), amount_from(entry.at("pack_s")),
+            count_from<std::uint64_t>(entry.at("bytes"))};
 }
 
 std::string device_key(const RowDevice& device)
@@ -60,14 +75,9 @@ std::string device_key(const RowDevice& device)
 
 } // namespace
 
-Yardsticks::Yardsticks(Journal* journal) : journal_(journal)
+Yardsticks::Yardsticks(Journal* journal)
+    : journal_(journal), known_(kept_values(journal, yardstick_key, "a microbenchmark", yardstick_from))
 {
-    if (journal == nullptr) return;
-    for (const json& entry : journal->entries()) {
-        if (!entry.contains(entry_key)) continue;
-        if (!is_whole_entry(entry)) journal->reject("a microbenchmark in the journal is damaged");
-        known_[entry[entry_key]] = yardstick_of(entry);
-    }
 }
 
 void Yardsticks::measure(std::vector<RowDevice>& devices, const SessionOptions& options)
@@ -82,38 +92,9 @@ void Yardsticks::measure(std::vector<RowDevice>& devices, const SessionOptions& 
     }
 }
 
-namespace {
-
-using nlohmann::json;
-
-constexpr const char* cost_key = "setup";
-
-json cost_entry(const std::string& row, const SetupCost& cost)
+SetupCosts::SetupCosts(Journal* journal)
+    : journal_(journal), known_(kept_values(journal, cost_key, "a build time", cost_from))
 {
-    return {{cost_key, row}, {"build_s", cost.build_s}, {"pack_s", cost.pack_s}, {"bytes", cost.bytes}};
-}
-
-bool is_duration(const json& entry, const char* key)
-{
-    return entry.contains(key) && entry[key].is_number() && std::isfinite(entry[key].get<double>()) && entry[key] >= 0;
-}
-
-bool is_whole_cost(const json& entry)
-{
-    return entry[cost_key].is_string() && is_duration(entry, "build_s") && is_duration(entry, "pack_s") &&
-           entry.contains("bytes") && entry["bytes"].is_number_unsigned();
-}
-
-} // namespace
-
-SetupCosts::SetupCosts(Journal* journal) : journal_(journal)
-{
-    if (journal == nullptr) return;
-    for (const json& entry : journal->entries()) {
-        if (!entry.contains(cost_key)) continue;
-        if (!is_whole_cost(entry)) journal->reject("a build time in the journal is damaged");
-        known_[entry[cost_key]] = {entry["build_s"], entry["pack_s"], entry["bytes"]};
-    }
 }
 
 void SetupCosts::restore(std::vector<RowRun>& rows)
@@ -122,7 +103,7 @@ void SetupCosts::restore(std::vector<RowRun>& rows)
         const auto cost = setup_cost(row);
         if (!cost) continue;
         const auto [place, is_new] = known_.emplace(row_name(row.key), *cost);
-        if (is_new && journal_ != nullptr) journal_->append(cost_entry(place->first, *cost));
+        if (is_new && journal_ != nullptr) journal_->append(entry_of(place->first, *cost));
         set_setup_cost(row, place->second);
     }
 }

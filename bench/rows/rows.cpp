@@ -369,6 +369,16 @@ std::string kernel_title(const RowKey& key)
     return title;
 }
 
+std::optional<KernelId> kernel_named(std::string_view method, std::string_view layout, std::string_view math,
+                                     std::string_view schedule, Task task)
+{
+    for (const KernelId& kernel : kernels_of(task))
+        if (name_of(kernel.method) == method && name_of(kernel.layout) == layout && name_of(kernel.math) == math &&
+            name_of(kernel.schedule) == schedule)
+            return kernel;
+    return std::nullopt;
+}
+
 std::string rays_title(const RowKey& key)
 {
     std::string title = key.scene;

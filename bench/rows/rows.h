@@ -3,7 +3,9 @@
 #include "bench/options/options.h"
 #include "core/device/backend.h"
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tetrace {
@@ -44,6 +46,11 @@ struct RowKey {
 /// "rays:morton". Rows of a backend's later devices end in the device's index, "api:opencl:1". Rows of task search have
 /// no rays: theirs are given.
 [[nodiscard]] std::string row_name(const RowKey& key);
+
+/// The kernel of these names, as results have them; empty if this tetrace has none.
+[[nodiscard]] std::optional<KernelId> kernel_named(std::string_view method, std::string_view layout,
+                                                   std::string_view math, std::string_view schedule,
+                                                   Task task = Task::trace);
 
 /// Name without the scene, for tables under the scene's heading: "cdt maria tet80".
 [[nodiscard]] std::string kernel_title(const RowKey& key);

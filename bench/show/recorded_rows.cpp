@@ -69,12 +69,9 @@ void read_older(RowRecord& record, const ResultValue& value)
 /// The kernel of this program that the record's key names.
 KernelId known_kernel(const KernelId& named, const ResultValue& row)
 {
-    const auto kernels = kernels_of(named.task);
-    const auto found = std::ranges::find_if(kernels, [&](const KernelId& one) {
-        return one.method == named.method && one.layout == named.layout && one.math == named.math &&
-               one.schedule == named.schedule;
-    });
-    if (found == kernels.end())
+    const auto found = kernel_named(name_of(named.method), name_of(named.layout), name_of(named.math),
+                                    name_of(named.schedule), named.task);
+    if (!found)
         row.at("method").reject("and its layout, math and schedule are not a kernel of this tetrace: use the one that "
                                 "wrote the file");
     return *found;
