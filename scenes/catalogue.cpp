@@ -151,7 +151,7 @@ std::string why_not_available(const std::string& name)
     if (entry != nullptr) return entry->source == SceneSource::file ? locate_mesh(*entry).reason : "";
     if (find_procedural(name) || lattice_resolution(name)) return "";
     std::error_code ignored; // what cannot be looked at is not there for us
-    if (std::filesystem::is_regular_file(name, ignored)) return "";
+    if (std::filesystem::is_regular_file(name, ignored) || is_stream(name)) return "";
     return fmt::format("scene {}: neither a name of the catalogue nor a file", name);
 }
 

@@ -6,15 +6,16 @@
 #include "core/base/stopwatch.h"
 #include "scenes/build_scene.h"
 #include "scenes/cache.h"
+#include "scenes/gltf_buffers.h"
 #include "scenes/mesh_files.h"
 #include "scenes/procedural.h"
 #include "scenes/scene_file.h"
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <fstream>
 #include <functional>
 #include <optional>
 #include <span>
@@ -91,20 +92,13 @@ private:
 /// In pieces: the builder, which takes the whole file at once, has a limit of memory, and this process has none.
 std::uint64_t MeshSceneLoader::hash_mesh() const
 {
-    std::error_code not_there; // opening a folder works, and a pipe would wait for its writer
-    std::ifstream file;
-    if (fs::is_regular_file(mesh_, not_there)) file.open(mesh_, std::ios::binary);
     Hasher hasher;
-    std::uint64_t read = 0;
-    std::vector<char> piece(std::size_t{1} << 20);
-    while (file.read(piece.data(), static_cast<std::streamsize>(piece.size())) || file.gcount() > 0) {
-        const auto size = static_cast<std::size_t>(file.gcount());
-        hasher.add(std::as_bytes(std::span(piece).first(size)));
-        read += size;
-    }
-    if (read == 0 || file.bad())
+    if (add_file(hasher, mesh_) == 0)
         throw Error(ErrorKind::invalid_input,
                     fmt::format("reading mesh {}: it is empty, no regular file, or may not be read", mesh_.string()));
+    std::string extension = mesh_.extension().string();
+    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    if (extension == ".gltf") add_gltf_buffers(hasher, mesh_, file_bytes(mesh_).value_or(""));
     return hasher.hash();
 }
 
@@ -162,6 +156,9 @@ bool MeshSceneLoader::read_cached()
         loaded_.messages.push_back(
             fmt::format("{}: {} degenerate and {} duplicate triangles were removed when it was built", label_,
                         info.degenerate_triangles, info.duplicate_triangles));
+    if (difference.empty() && info.centre != Double3{})
+        loaded_.messages.push_back(fmt::format("{}: ({}, {}, {}) was subtracted from its coordinates when it was built",
+                                               label_, info.centre.x, info.centre.y, info.centre.z));
     loaded_.from_cache = difference.empty();
     return loaded_.from_cache;
 }
@@ -353,7 +350,7 @@ LoadedScene load_scene(const SceneRequest& request, const Progress& progress)
     std::error_code ignored; // what cannot be looked at is not a file for us
     if (!fs::exists(path, ignored)) refuse_name(request.name);
     if (path.extension() == ".tet") return load_scene_file(request, progress);
-    return load_mesh_scene(request, path, progress);
+    return load_mesh_scene(request, is_stream(path) ? spooled_mesh(path) : path, progress);
 }
 
 } // namespace tetrace

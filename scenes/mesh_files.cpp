@@ -10,10 +10,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cerrno>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <iterator>
+#include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -83,6 +87,32 @@ std::vector<std::byte> read_archive_member(const std::filesystem::path& path, co
 }
 
 namespace fs = std::filesystem;
+
+bool is_stream(const fs::path& path)
+{
+    std::error_code ignored; // what cannot be looked at is not there for us
+    const fs::file_status status = fs::status(path, ignored);
+    if (fs::is_fifo(status) || fs::is_socket(status)) return true;
+    const std::string name = fs::absolute(path, ignored).lexically_normal().string();
+    return fs::is_regular_file(status) && (name.starts_with("/dev/") || name.starts_with("/proc/"));
+}
+
+fs::path spooled_mesh(const fs::path& stream)
+{
+    static std::map<std::string, fs::path> copies;
+    fs::path& copy = copies[stream.string()];
+    if (!copy.empty()) return copy;
+    const std::optional<std::string> bytes = file_bytes(stream);
+    if (!bytes || bytes->empty())
+        throw Error(ErrorKind::invalid_input,
+                    fmt::format("reading mesh {}: {}", stream.string(),
+                                bytes ? "it is empty: write a mesh to it, once" : std::strerror(errno)));
+    const fs::path target = cached_mesh_path(stream.filename().string(), hash_of(*bytes));
+    AtomicFile file(target);
+    file.write(std::as_bytes(std::span(*bytes)));
+    file.commit();
+    return copy = target;
+}
 
 namespace {
 

@@ -15,6 +15,14 @@ namespace tetrace {
 [[nodiscard]] std::vector<std::byte> read_archive_member(const std::filesystem::path& archive,
                                                          const std::string& member, std::size_t max_bytes);
 
+/// Whether a path is a pipe, or names what this process has open (/dev/stdin, /dev/fd/3), which another process cannot
+/// read.
+[[nodiscard]] bool is_stream(const std::filesystem::path& path);
+
+/// A copy of a stream, in the cache; the stream is read once, whole, however often its path is asked for.
+/// Throws Error{invalid_input} if it is empty or cannot be read, or if writing fails.
+[[nodiscard]] std::filesystem::path spooled_mesh(const std::filesystem::path& stream);
+
 /// The mesh file of a catalogue row whose source is `file`, or why there is none.
 struct MeshLocation {
     std::filesystem::path file;    ///< as a plain file; empty if it has to be unpacked, or is missing

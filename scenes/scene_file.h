@@ -7,7 +7,7 @@
 namespace tetrace {
 
 /// Version of the `.tet` format and of the code that builds its content; part of the cache's key.
-inline constexpr std::uint32_t scene_file_version = 5;
+inline constexpr std::uint32_t scene_file_version = 6;
 
 /// Writes a scene to a temporary name next to `path`, syncs, and renames it: a reader sees the old file or the new one.
 /// Throws Error{invalid_input} naming the path and the system's reason.

@@ -156,6 +156,8 @@ std::vector<char> pack_information(const Scene& scene)
     out.put(build.switches);
     out.put(build.tool);
     out.put(build.build_s);
+    for (const double value : {build.centre.x, build.centre.y, build.centre.z, build.rounding})
+        out.put(value);
     out.put(static_cast<std::int32_t>(build.scale_exponent));
     for (const std::uint64_t count :
          {build.merged_vertices, build.degenerate_triangles, build.duplicate_triangles, build.snapped_coordinates})
@@ -181,6 +183,8 @@ bool unpack_information(std::span<const char> bytes, Scene& scene)
     in.get(build.switches);
     in.get(build.tool);
     in.get(build.build_s);
+    for (double* value : {&build.centre.x, &build.centre.y, &build.centre.z, &build.rounding})
+        in.get(*value);
     std::int32_t exponent = 0;
     in.get(exponent);
     build.scale_exponent = exponent;

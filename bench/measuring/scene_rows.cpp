@@ -189,6 +189,12 @@ nlohmann::json scene_json(const SceneWork& scene, const Options& options)
                              {"width", scene.width()},
                              {"height", scene.height()},
                              {"locate_s", scene.locate_s()}};
+    const auto list = [](Double3 v) { return nlohmann::json{v.x, v.y, v.z}; };
+    const BoundingSphere sphere = source_sphere(loaded.scene);
+    object["centre"] = list(sphere.centre);
+    object["radius"] = sphere.radius;
+    if (build.rounding > 0) object["rounding"] = build.rounding;
+    if (build.centre != Double3{}) object["subtracted"] = list(build.centre);
     if (loaded.no_tets) object["no_tets"] = printable_text(loaded.no_tets->what());
     if (const auto& hash = scene.camera_set_hash()) object["camera_set_hash"] = hash_text(*hash);
     if (build.repair.asked) object["repair"] = repair_json(build.repair);

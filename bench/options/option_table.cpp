@@ -84,8 +84,9 @@ std::vector<OptionRow> scene_options()
 {
     return {
         {"Scenes", "--scene", "SCENE",
-         "A name from the catalogue ('tetrace scenes' lists it), a mesh file (PLY, OBJ, OFF, STL, glTF), or a .tet "
-         "file. May be repeated, or a list with commas. 'all' is every available scene of the catalogue except "
+         "A name from the catalogue ('tetrace scenes' lists it), a mesh file (PLY, OBJ, OFF, STL, glTF), a pipe of "
+         "one, or a .tet file. May be repeated, or a list with commas. 'all' is every available scene of the catalogue "
+         "except "
          "lattice. NAME@N has about N triangles; the name can be " +
              scene_names([](const CatalogueEntry& scene) { return scene.procedural.has_value(); }) +
              ". lattice:N has 6 N^3 tets, for example 2 GB in layout half32 with N = 138. Default: bunny, armadillo "

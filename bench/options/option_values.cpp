@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 #include <limits>
 #include <optional>
@@ -104,6 +105,23 @@ std::vector<std::string> split_list(const std::string& option, const std::string
             throw Error(ErrorKind::usage,
                         fmt::format("{}: empty value in '{}'; write values with one comma between", option, text));
     return parts;
+}
+
+std::vector<std::string> split_scenes(const std::string& option, const std::string& text)
+{
+    std::error_code ignored; // what cannot be looked at is not a file for us
+    std::vector<std::string> names;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t first = std::min(text.find(',', begin), text.size());
+        std::size_t end = text.size();
+        while (end > first && !std::filesystem::is_regular_file(text.substr(begin, end - begin), ignored))
+            end = text.rfind(',', end - 1);
+        names.push_back(text.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    for (const std::string& name : names)
+        if (name.empty()) return split_list(option, text); // which says so
+    return names;
 }
 
 void reject_value(const std::string& option, const std::string& value, const std::string& accepted)

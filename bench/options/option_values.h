@@ -20,6 +20,8 @@ namespace tetrace {
 
 /// Splits at commas. Throws Error{usage} naming the option where a part is empty.
 [[nodiscard]] std::vector<std::string> split_list(const std::string& option, const std::string& text);
+/// The same of scenes: what is the name of a file stays whole, its commas included; the longest such name counts.
+[[nodiscard]] std::vector<std::string> split_scenes(const std::string& option, const std::string& text);
 
 /// Throws Error{usage}: the value is not accepted; lists the accepted ones.
 [[noreturn]] void reject_value(const std::string& option, const std::string& value, const std::string& accepted);

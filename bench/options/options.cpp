@@ -108,7 +108,9 @@ void apply_values(Options& options, const OptionRow& row, const std::vector<std:
         throw Error(ErrorKind::usage,
                     fmt::format("{} is given {} times; it accepts one value", row.name, occurrences.size()));
     for (const std::string& text : occurrences)
-        for (const std::string& value : row.list ? split_list(row.name, text) : std::vector{text})
+        for (const std::string& value : row.name == "--scene" ? split_scenes(row.name, text)
+                                        : row.list            ? split_list(row.name, text)
+                                                              : std::vector{text})
             row.apply(options, value);
 }
 

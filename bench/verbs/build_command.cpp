@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <optional>
+#include <set>
+#include <string>
 
 namespace tetrace {
 
@@ -23,6 +25,7 @@ struct Built {
     double build_s = 0;
     bool from_cache = false;
     bool interrupted = false; ///< Ctrl-C came while it was built
+    BoundingSphere sphere;    ///< of the mesh, in its file's coordinates
     RayTotals totals;
     std::optional<Error> failure; ///< why it failed
 };
@@ -89,6 +92,7 @@ Built build_one(const SceneRequest& request, const Options& options)
         built.interrupted = scene.loaded().interrupted;
         built.request.build.divisions = scene.loaded().scene.domain.divisions;
         built.request.build.domain = scene.loaded().scene.domain.kind;
+        built.sphere = source_sphere(scene.loaded().scene);
         count_steps(built, scene, options);
         built.scene = scene_json(scene, options);
     } catch (const Error& error) {
@@ -237,6 +241,20 @@ void add_optimiser(Sheet& sheet, const std::vector<Built>& all, const Built& bui
     sheet.table(table);
 }
 
+/// What cameras refer to, once a scene.
+void add_spheres(Sheet& sheet, const std::vector<Built>& all)
+{
+    std::set<std::string> said;
+    for (const Built& built : all)
+        if (built.scene && said.insert(built.request.name).second) {
+            const BoundingSphere& sphere = built.sphere;
+            sheet.line(fmt::format(
+                "{}: cameras are placed in radii of {:.9g} from its centre, ({:.9g}, {:.9g}, {:.9g}), "
+                "in the mesh's coordinates.",
+                scene_label(built.request.name), sphere.radius, sphere.centre.x, sphere.centre.y, sphere.centre.z));
+        }
+}
+
 Report build_report(const std::vector<Built>& all, const Options& options)
 {
     nlohmann::json section = result_head(options);
@@ -251,6 +269,7 @@ Report build_report(const std::vector<Built>& all, const Options& options)
     for (const Built& built : all)
         add_optimiser(sheet, all, built);
     sheet.gap();
+    add_spheres(sheet, all);
     sheet.line(fmt::format(
         "Steps of primary rays: {} views of {} at {}x{}. Cost: free faces outside the objects that a "
         "uniform line crosses, before and after optimising. Reached: what rays from outside can load; the rest is "

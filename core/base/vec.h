@@ -17,6 +17,7 @@ struct Float3 {
 struct Double3 {
     double x = 0, y = 0, z = 0;
 
+    friend bool operator==(const Double3&, const Double3&) = default;
     friend Double3 operator+(Double3 a, Double3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
     friend Double3 operator-(Double3 a, Double3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
     friend Double3 operator*(Double3 a, double s) { return {a.x * s, a.y * s, a.z * s}; }

@@ -2,7 +2,16 @@
 
 #include "core/base/hash.h"
 
+#include <cmath>
+
 namespace tetrace {
+
+BoundingSphere source_sphere(const Scene& scene)
+{
+    const BoundingSphere placed = bounding_sphere(scene.mesh);
+    const double unit = std::ldexp(1.0, -scene.build.scale_exponent);
+    return {placed.centre * unit + scene.build.centre, placed.radius * unit};
+}
 
 std::uint32_t source_triangle(const Scene& scene, std::uint32_t face_id)
 {

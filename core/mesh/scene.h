@@ -75,7 +75,9 @@ struct BuildInfo {
     std::string switches;          ///< TetGen's switches as passed; empty if no TetGen ran
     std::string tool;              ///< program and version that made the tets
     double build_s = 0;            ///< seconds from mesh file to checked tets
-    int scale_exponent = 0;        ///< domain units = mesh units * 2^scale_exponent
+    Double3 centre{};       ///< what was subtracted from the file's coordinates before they were rounded to float
+    double rounding = 0;    ///< largest distance by which rounding moved a vertex; mesh units
+    int scale_exponent = 0; ///< domain units = (mesh units - centre) * 2^scale_exponent
     std::uint64_t merged_vertices = 0;
     std::uint64_t degenerate_triangles = 0;
     std::uint64_t duplicate_triangles = 0;
@@ -99,6 +101,9 @@ struct Scene {
 
     friend bool operator==(const Scene&, const Scene&) = default;
 };
+
+/// The bounding sphere of the mesh in the coordinates of its file: what cameras refer to.
+[[nodiscard]] BoundingSphere source_sphere(const Scene& scene);
 
 /// The source's triangle of a Hit::face_id: what users see. What names no triangle (NO_HIT, LOST) stays.
 [[nodiscard]] std::uint32_t source_triangle(const Scene& scene, std::uint32_t face_id);

@@ -4,6 +4,7 @@
 #include "core/base/exact.h"
 #include "core/base/stopwatch.h"
 #include "core/mesh/entry_grid.h"
+#include "scenes/builder/empty_triangles.h"
 #include "scenes/builder/failure.h"
 #include "scenes/builder/mesh_reader.h"
 #include "scenes/builder/repair/repair.h"
@@ -20,16 +21,21 @@ namespace tetrace {
 
 namespace {
 
-TriangleMesh scaled(const TriangleMesh& mesh, int exponent, std::uint64_t& snapped)
+TriangleMesh scaled(const TriangleMesh& mesh, Placement& placement)
 {
     TriangleMesh result = mesh;
-    snapped = 0;
+    placement.snapped_coordinates = 0;
+    placement.moved = 0;
     for (Float3& vertex : result.vertices) {
+        Double3 change{};
         for (int axis = 0; axis < 3; ++axis) {
-            const double wanted = std::ldexp(static_cast<double>(vertex[axis]), exponent);
+            const double wanted = std::ldexp(static_cast<double>(vertex[axis]), placement.scale_exponent);
             vertex[axis] = snap_to_grid(static_cast<float>(wanted));
-            if (static_cast<double>(vertex[axis]) != wanted) ++snapped;
+            const double by = wanted - static_cast<double>(vertex[axis]);
+            (axis == 0 ? change.x : axis == 1 ? change.y : change.z) = by;
+            if (by != 0) ++placement.snapped_coordinates;
         }
+        placement.moved = std::max(placement.moved, std::ldexp(length(change), -placement.scale_exponent));
     }
     return result;
 }
@@ -58,15 +64,15 @@ int safe_exponent(const TriangleMesh& mesh)
 
 Placement place(TriangleMesh& mesh, DomainKind kind)
 {
-    Placement placement{safe_exponent(mesh), 0};
-    TriangleMesh best = scaled(mesh, placement.scale_exponent, placement.snapped_coordinates);
+    Placement placement{safe_exponent(mesh)};
+    TriangleMesh best = scaled(mesh, placement);
     // Twice as large as long as it fits; the domain itself is rounded outwards, so ask for it each time.
     while (2 * reach(make_domain(best, kind, 1)) <= 1 + 0x1p-18f) {
-        std::uint64_t snapped = 0;
-        TriangleMesh larger = scaled(mesh, placement.scale_exponent + 1, snapped);
+        Placement next{placement.scale_exponent + 1};
+        TriangleMesh larger = scaled(mesh, next);
         if (reach(make_domain(larger, kind, 1)) > 1) break;
         best = std::move(larger);
-        placement = {placement.scale_exponent + 1, snapped};
+        placement = next;
     }
     mesh = std::move(best);
     return placement;
@@ -89,6 +95,9 @@ void note_clean_up(const CleanUp& cleaned, const std::string& why, const Builder
 
 void clean(Scene& scene, const std::string& why, const BuilderTalk& talk)
 {
+    if (const std::uint64_t split = split_at_empty_triangles(scene.mesh, scene.origins); split > 0)
+        talk.note(
+            fmt::format("{} triangles split where a neighbour has no area{}, so that no gap is left", split, why));
     const CleanUp cleaned = clean_up(scene.mesh, scene.origins);
     note_clean_up(cleaned, why, talk);
     scene.build.merged_vertices += cleaned.merged_vertices;
@@ -100,13 +109,41 @@ void clean(Scene& scene, const std::string& why, const BuilderTalk& talk)
             fmt::format("cleaning {}: no triangle has an area; check the mesh's coordinates", scene.build.source));
 }
 
+void note_rounding(const MeshSoup& soup, const BuilderTalk& talk)
+{
+    if (soup.centre != Double3{})
+        talk.note(fmt::format("the coordinates are large for the mesh's size: ({}, {}, {}), the centre of its bounding "
+                              "box, was subtracted before they were rounded to float",
+                              soup.centre.x, soup.centre.y, soup.centre.z));
+    if (soup.merged_by_rounding == 0) return;
+    const auto [low, high] = bounding_box(soup.mesh);
+    talk.note(fmt::format("rounding to float put {} vertices at the place of another; it moved vertices by at most "
+                          "{:.3g}, {:.2g} of the bounding box's diagonal",
+                          soup.merged_by_rounding, soup.rounding, soup.rounding / length(high - low)));
+}
+
+void read(const std::filesystem::path& path, Scene& scene, const BuilderTalk& talk)
+{
+    MeshSoup soup = read_mesh(path);
+    for (const std::string& note : soup.notes)
+        talk.note(note);
+    note_rounding(soup, talk);
+    scene.mesh = std::move(soup.mesh);
+    scene.build.source_hash = soup.source_hash;
+    scene.build.centre = soup.centre;
+    scene.build.rounding = soup.rounding;
+}
+
 void place_mesh(Scene& scene, const BuilderOptions& options, const BuilderTalk& talk)
 {
     const Placement placement = place(scene.mesh, options.domain);
     scene.build.scale_exponent = placement.scale_exponent;
     scene.build.snapped_coordinates = placement.snapped_coordinates;
     if (placement.snapped_coordinates > 0) {
-        talk.note(fmt::format("{} coordinates near 0 rounded to the grid of 2^-40", placement.snapped_coordinates));
+        scene.build.rounding += placement.moved;
+        talk.note(
+            fmt::format("{} coordinates near 0 rounded to the grid of 2^-40, which moved vertices by at most {:.3g}",
+                        placement.snapped_coordinates, placement.moved));
         clean(scene, " after rounding to the grid", talk);
     }
 }
@@ -276,11 +313,7 @@ PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& ta
     scene.build.tool = builder_tool();
 
     talk.stage("reading " + scene.build.source);
-    MeshSoup soup = read_mesh(options.mesh);
-    if (soup.skipped_faces > 0)
-        talk.note(fmt::format("{} faces of fewer than three corners skipped", soup.skipped_faces));
-    scene.mesh = std::move(soup.mesh);
-    scene.build.source_hash = soup.source_hash;
+    read(options.mesh, scene, talk);
     scene.origins.resize(scene.mesh.triangles.size());
     std::iota(scene.origins.begin(), scene.origins.end(), 0u);
 

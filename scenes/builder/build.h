@@ -21,6 +21,7 @@ namespace tetrace {
 struct Placement {
     int scale_exponent = 0;                ///< domain units = mesh units * 2^scale_exponent
     std::uint64_t snapped_coordinates = 0; ///< coordinates that the 2^-40 grid rounded; every other one is exact
+    double moved = 0;                      ///< the largest distance by which that moved a vertex; mesh units
 };
 
 /// Scales a mesh by a power of two, so that its domain is in [-1, 1]^3 and exceeds 1/2, and rounds coordinates to the

@@ -3,6 +3,7 @@
 #include "core/base/files.h"
 #include "core/base/hash.h"
 #include "scenes/builder/mesh_source.h"
+#include "scenes/gltf_buffers.h"
 
 #include <cerrno>
 #include <cstring>
@@ -34,6 +35,17 @@ std::string_view without_byte_order_mark(std::string_view bytes, const std::stri
     return bytes.starts_with(mark) && extension != ".stl" ? bytes.substr(mark.size()) : bytes;
 }
 
+// Of a name without extension, as a pipe has. OBJ has nothing that it begins with.
+std::string format_of(std::string_view bytes)
+{
+    const std::string begin = lower_case(bytes.substr(0, bytes.find_first_of("\r\n\0", 0, 3)).substr(0, 80));
+    if (begin.starts_with("ply")) return ".ply";
+    if (begin.starts_with("gltf")) return ".glb";
+    if (begin.starts_with("{")) return ".gltf";
+    if (begin.starts_with("solid") || bytes.substr(0, 200).find('\0') != std::string_view::npos) return ".stl";
+    return begin.substr(0, begin.find(' ')).find("off") != std::string::npos ? ".off" : ".obj";
+}
+
 void read_as(const std::string& extension, MeshSource& source)
 {
     if (extension == ".ply") return read_ply(source);
@@ -45,26 +57,36 @@ void read_as(const std::string& extension, MeshSource& source)
                 "use a file with the extension .ply, .obj, .off, .stl, .glb or .gltf");
 }
 
+MeshSoup parse(const std::filesystem::path& path, std::string_view bytes, const std::filesystem::path& folder)
+{
+    std::string extension = lower_case(path.extension().string());
+    MeshSource source(path.string(), without_byte_order_mark(bytes, extension), folder);
+    if (bytes.empty()) source.fail("file", "it is empty");
+    if (extension != ".stl" && (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")))
+        source.fail("file", "its text is UTF-16", "convert it: iconv -f UTF-16 -t UTF-8 FILE > NEW");
+    if (extension.empty()) extension = format_of(source.bytes());
+    read_as(extension, source);
+    return source.finish();
+}
+
 } // namespace
 
 MeshSoup read_mesh(const std::filesystem::path& path)
 {
-    return parse_mesh(path, read_bytes(path));
+    const std::string bytes = read_bytes(path);
+    MeshSoup soup = parse(path, bytes, path.has_parent_path() ? path.parent_path() : ".");
+    Hasher hasher;
+    hasher.add(std::as_bytes(std::span(bytes)));
+    if (lower_case(path.extension().string()) == ".gltf") add_gltf_buffers(hasher, path, bytes);
+    soup.source_hash = hasher.hash();
+    return soup;
 }
 
 MeshSoup parse_mesh(const std::filesystem::path& path, std::string_view bytes)
 {
-    const std::string extension = lower_case(path.extension().string());
-    MeshSource source(path.string(), without_byte_order_mark(bytes, extension));
-    if (bytes.empty()) source.fail("file", "it is empty");
-    read_as(extension, source);
-    MeshSoup& soup = source.soup();
-    if (soup.mesh.vertices.empty())
-        source.fail("mesh", "it lacks vertices", "export the mesh again, with its geometry");
-    if (soup.mesh.triangles.empty())
-        source.fail("mesh", "it lacks triangles", "a point cloud or a curve has no surface: reconstruct one first");
+    MeshSoup soup = parse(path, bytes, {});
     soup.source_hash = hash_bytes(std::as_bytes(std::span(bytes)));
-    return std::move(soup);
+    return soup;
 }
 
 } // namespace tetrace

@@ -4,7 +4,9 @@
 #include "core/mesh/triangle_mesh.h"
 #include "scenes/builder/mesh_reader.h"
 
+#include <array>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,35 +20,59 @@ namespace tetrace {
 /// of no vertex), and their messages seldom name the place.
 class MeshSource {
 public:
-    MeshSource(std::string name, std::string_view bytes) : name_(std::move(name)), bytes_(bytes) {}
+    /// folder: where the file's other files are; empty: they are refused.
+    MeshSource(std::string name, std::string_view bytes, std::filesystem::path folder)
+        : name_(std::move(name)), bytes_(bytes), folder_(std::move(folder))
+    {
+    }
 
     [[nodiscard]] std::string_view bytes() const { return bytes_; }
-    [[nodiscard]] MeshSoup& soup() { return soup_; }
+    [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+    [[nodiscard]] std::size_t vertex_count() const { return positions_.size(); }
 
     /// Throws Error{invalid_input}: "reading <file>: <place>: <problem>; <remedy>".
     [[noreturn]] void fail(const std::string& place, const std::string& problem, const std::string& remedy) const;
     /// fail() with the remedy that fits files cut short or edited by hand.
     [[noreturn]] void fail(const std::string& place, const std::string& problem) const;
 
-    /// Throws where `count` elements of at least `min_bytes` each cannot be in the file.
+    /// Throws if `count` elements of at least `min_bytes` each cannot be in the file.
     void require_room(const std::string& elements, std::int64_t count, std::size_t min_bytes) const;
-    /// Adds a vertex; throws where a coordinate is not a finite float.
-    void add_vertex(Float3 position, const std::string& place);
-    /// Adds a polygon as triangles (cut_polygon); throws where an index is not below `vertex_count`.
+    /// Adds a vertex; throws if a coordinate is not finite as a float.
+    void add_vertex(Double3 position, const std::string& place);
+    /// Adds a polygon; throws if an index is not below `vertex_count`.
     void add_face(const std::vector<std::int64_t>& corners, std::size_t vertex_count, const std::string& place);
+    /// A sentence for the user.
+    void note(std::string sentence) { notes_.push_back(std::move(sentence)); }
+
+    /// Rounds the vertices and cuts the polygons, each of which is in the place among the triangles where it was added.
+    /// Throws if there are no vertices or no triangles. The source is empty then.
+    [[nodiscard]] MeshSoup finish();
 
 private:
-    void add_polygon(const std::vector<std::int64_t>& corners);
+    struct Polygon {
+        std::size_t triangle; ///< before which its own are inserted
+        std::size_t corner, corners;
+    };
+
+    void place_vertices(MeshSoup& soup);
+    void cut_polygons(MeshSoup& soup) const;
 
     std::string name_;
     std::string_view bytes_;
-    MeshSoup soup_;
+    std::filesystem::path folder_;
+    std::vector<Double3> positions_;
+    std::vector<std::array<std::uint32_t, 3>> triangles_;
+    std::vector<std::uint32_t> corners_; ///< of the polygons
+    std::vector<Polygon> polygons_;
+    std::vector<std::string> notes_;
+    std::uint64_t skipped_faces_ = 0; ///< of fewer than three corners
 };
 
 /// Splits text into lines and lines into words, and counts lines for messages.
 class LineReader {
 public:
-    explicit LineReader(std::string_view text) : text_(text) {}
+    /// Lines end with LF or CR LF; with CR if the first line does.
+    explicit LineReader(std::string_view text);
 
     /// The next line's words without comment (from '#' on) and line end; false at the end of the text. Blank lines are
     /// skipped.
@@ -54,29 +80,34 @@ public:
     /// The next line as it is.
     bool next_raw(std::string_view& line);
     [[nodiscard]] std::size_t offset() const { return at_; }
+    /// Whether fewer lines that are not blank follow than `records`: then values have to be taken word by word.
+    [[nodiscard]] bool has_fewer_lines(std::uint64_t records) const;
     [[nodiscard]] std::string place(const std::string& element) const; ///< "<element> (line <n>)"
 
 private:
     std::string_view text_;
+    char end_of_line_ = '\n';
     std::size_t at_ = 0;
     std::size_t line_ = 0;
 };
 
 [[nodiscard]] std::vector<std::string_view> split_words(std::string_view line);
-/// A decimal number rounded once to the nearest float; infinite if it is outside the range; nothing if it is no number.
-[[nodiscard]] std::optional<float> parse_float(std::string_view word);
+/// A decimal number, rounded to the nearest double that rounds to the nearest float; infinite if it is outside the
+/// range; nothing if it is not a number.
+[[nodiscard]] std::optional<double> parse_number(std::string_view word);
 [[nodiscard]] std::optional<std::int64_t> parse_integer(std::string_view word);
 [[nodiscard]] std::string lower_case(std::string_view word);
 
-/// Three coordinates from words [first, first + 3); throws where they are missing or no numbers.
-[[nodiscard]] Float3 parse_position(const MeshSource& source, const std::vector<std::string_view>& words,
-                                    std::size_t first, const std::string& place);
+/// A coordinate; throws if the word is not a number, and says if it has a decimal comma.
+[[nodiscard]] double parse_coordinate(const MeshSource& source, std::string_view word, const std::string& place);
+/// Three coordinates from words [first, first + 3); throws if they are missing or not numbers.
+[[nodiscard]] Double3 parse_position(const MeshSource& source, const std::vector<std::string_view>& words,
+                                     std::size_t first, const std::string& place);
 
 void read_ply(MeshSource& source);
 void read_obj(MeshSource& source);
 void read_off(MeshSource& source);
 void read_stl(MeshSource& source);
-/// Throws Error{invalid_input} if this was built without tinygltf.
 void read_gltf(MeshSource& source);
 
 } // namespace tetrace

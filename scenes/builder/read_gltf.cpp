@@ -1,22 +1,11 @@
-#include "scenes/builder/mesh_source.h"
-
-// tinygltf parses the JSON and the chunks; pictures are not decoded, and no other file is opened. What the accessors
-// say is checked here.
-#include <fstream> // which tinygltf does not include if it opens no files
-#define TINYGLTF_IMPLEMENTATION
-#define TINYGLTF_NO_STB_IMAGE
-#define TINYGLTF_NO_STB_IMAGE_WRITE
-#define TINYGLTF_NO_EXTERNAL_IMAGE
-#define TINYGLTF_NO_FS
-#include <tiny_gltf.h>
+#include "scenes/builder/gltf_values.h"
+#include "scenes/builder/read_draco.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
-#include <limits>
 #include <utility>
 
 // Source of the format: Khronos Group, "glTF 2.0 Specification".
@@ -24,160 +13,10 @@
 namespace tetrace {
 namespace {
 
+using Json = nlohmann::json;
 using Matrix = std::array<std::array<double, 4>, 3>; // rows; the fourth is 0 0 0 1
-constexpr const char* export_plainly = "export it again as .glb, without compression";
-constexpr int deepest = 256; // of JSON: tinygltf follows it by recursion
 
-// At most so deep as tinygltf may be given it. Binary chunks are looked at too, harmlessly: a false alarm there would
-// take hundreds of brackets more of one kind than of the other, so only the JSON chunk counts.
-void require_shallow(const MeshSource& source, std::string_view json)
-{
-    int depth = 0;
-    bool quoted = false;
-    for (std::size_t i = 0; i < json.size(); ++i) {
-        const char c = json[i];
-        if (c == '"') quoted = !quoted;
-        if (quoted && c == '\\') ++i;
-        if (quoted) continue;
-        if (c == '{' || c == '[') ++depth;
-        if (c == '}' || c == ']') --depth;
-        if (depth > deepest) source.fail("header", fmt::format("its JSON is more than {} levels deep", deepest));
-    }
-}
-
-std::string_view json_chunk(std::string_view glb)
-{
-    std::uint32_t length = 0;
-    if (glb.size() < 20) return {};
-    std::memcpy(&length, glb.data() + 12, sizeof length); // little endian, as all that this program runs on
-    return glb.substr(20, length);
-}
-
-tinygltf::Model parse(const MeshSource& source)
-{
-    const std::string_view bytes = source.bytes();
-    if (bytes.size() > std::numeric_limits<std::uint32_t>::max())
-        source.fail("file", "it has more than 4 GiB", "glTF cannot hold more: simplify the mesh, or use PLY");
-    const auto size = static_cast<unsigned>(bytes.size());
-    const bool is_binary = bytes.starts_with("glTF");
-    require_shallow(source, is_binary ? json_chunk(bytes) : bytes);
-    tinygltf::TinyGLTF reader;
-    reader.SetImageLoader([](tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int,
-                             void*) { return true; },
-                          nullptr);
-    tinygltf::Model model;
-    std::string errors, warnings;
-    bool good = false;
-    try {
-        good = is_binary ? reader.LoadBinaryFromMemory(&model, &errors, &warnings,
-                                                       reinterpret_cast<const unsigned char*>(bytes.data()), size)
-                         : reader.LoadASCIIFromString(&model, &errors, &warnings, bytes.data(), size, "");
-    } catch (const std::bad_alloc&) {
-        throw;
-    } catch (const std::exception& unexpected) {
-        errors = unexpected.what();
-    }
-    if (errors.find("FS callback") != std::string::npos)
-        source.fail("buffers", "a buffer is in another file", "export it as .glb, which holds all in one file");
-    if (!good) source.fail("header", errors.empty() ? "it is not glTF 2.0" : errors.substr(0, 300));
-    return model;
-}
-
-// What changes the geometry, and is not read.
-void require_plain(const MeshSource& source, const tinygltf::Model& model)
-{
-    for (const char* const extension :
-         {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "EXT_mesh_gpu_instancing"}) {
-        const auto& used = model.extensionsUsed;
-        if (std::find(used.begin(), used.end(), extension) != used.end())
-            source.fail("header", fmt::format("it uses the extension {}, which is not read", extension),
-                        export_plainly);
-    }
-    // A reader has to refuse what it does not know; these say nothing of where triangles are, or only of their numbers.
-    for (const std::string& extension : model.extensionsRequired)
-        if (extension != "KHR_mesh_quantization" && extension != "KHR_lights_punctual" &&
-            !extension.starts_with("KHR_materials_") && !extension.starts_with("KHR_texture_"))
-            source.fail("header", fmt::format("it requires the extension {}, which is not read", extension),
-                        export_plainly);
-}
-
-// An element of a list that an index of the file names; throws where there is none.
-template <class Element>
-const Element& element_at(const MeshSource& source, const std::vector<Element>& list, int index,
-                          const std::string& place, const char* what)
-{
-    if (index < 0 || static_cast<std::size_t>(index) >= list.size())
-        source.fail(place, fmt::format("it names {} {} of {}", what, index, list.size()));
-    return list[static_cast<std::size_t>(index)];
-}
-
-// The values of an accessor, checked to lie in its buffer.
-class Values {
-public:
-    Values(const MeshSource& source, const tinygltf::Model& model, int index, int type, std::string place)
-    {
-        const tinygltf::Accessor& accessor = element_at(source, model.accessors, index, place, "accessor");
-        if (accessor.sparse.isSparse) source.fail(place, "its accessor is sparse, which is not read", export_plainly);
-        if (accessor.type != type) source.fail(place, fmt::format("accessor {} is of another type", index));
-        const auto& view = element_at(source, model.bufferViews, accessor.bufferView, place, "buffer view");
-        const auto& buffer = element_at(source, model.buffers, view.buffer, place, "buffer");
-        component_ = accessor.componentType;
-        normalized_ = accessor.normalized;
-        const int bytes = tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(component_));
-        if (bytes <= 0) source.fail(place, fmt::format("component type {} is none of glTF", component_));
-        size_ = static_cast<std::size_t>(bytes);
-        const std::size_t element =
-            size_ * static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type)));
-        stride_ = view.byteStride == 0 ? element : view.byteStride;
-        count_ = accessor.count;
-        std::size_t room = buffer.data.size();
-        for (const auto& [offset, length] :
-             {std::pair(view.byteOffset, view.byteLength), std::pair(accessor.byteOffset, std::size_t{0})}) {
-            if (offset > room || length > room - offset)
-                source.fail(place, "its buffer view is longer than its buffer");
-            room = length > 0 ? length : room - offset;
-        }
-        if (count_ > 0 && (element > room || count_ - 1 > (room - element) / stride_))
-            source.fail(place, fmt::format("{} elements are more than its buffer holds", count_));
-        data_ = buffer.data.data() + view.byteOffset + accessor.byteOffset;
-    }
-
-    [[nodiscard]] std::size_t count() const { return count_; }
-    [[nodiscard]] int component_type() const { return component_; }
-    [[nodiscard]] double at(std::size_t element, std::size_t component) const
-    {
-        const unsigned char* const from = data_ + element * stride_ + component * size_;
-        switch (component_) {
-        case TINYGLTF_COMPONENT_TYPE_FLOAT: return static_cast<double>(read<float>(from));
-        case TINYGLTF_COMPONENT_TYPE_BYTE: return scaled<std::int8_t>(from);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return scaled<std::uint8_t>(from);
-        case TINYGLTF_COMPONENT_TYPE_SHORT: return scaled<std::int16_t>(from);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return scaled<std::uint16_t>(from);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return read<std::uint32_t>(from);
-        default: return std::numeric_limits<double>::quiet_NaN(); // refused as a coordinate and as an index
-        }
-    }
-
-private:
-    template <class Value>
-    static Value read(const unsigned char* from)
-    {
-        Value value;
-        std::memcpy(&value, from, sizeof value);
-        return value;
-    }
-    template <class Value>
-    [[nodiscard]] double scaled(const unsigned char* from) const
-    {
-        const double value = read<Value>(from);
-        return normalized_ ? std::max(value / std::numeric_limits<Value>::max(), -1.0) : value;
-    }
-
-    const unsigned char* data_ = nullptr;
-    std::size_t count_ = 0, stride_ = 0, size_ = 0;
-    int component_ = 0;
-    bool normalized_ = false;
-};
+constexpr Matrix identity = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
 
 Matrix product(const Matrix& a, const Matrix& b)
 {
@@ -198,40 +37,41 @@ double determinant(const Matrix& m)
 }
 
 // As a matrix by columns, or as scale, rotation (a quaternion) and translation, in this order.
-Matrix matrix_of(const tinygltf::Node& node)
+Matrix matrix_of(const GltfFile& file, const Json& node, const std::string& place)
 {
-    Matrix m = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
-    if (node.matrix.size() == 16) {
+    Matrix m = identity;
+    if (const auto matrix = file.numbers(node, "matrix", 16, place); !matrix.empty()) {
         for (std::size_t row = 0; row < 3; ++row)
             for (std::size_t column = 0; column < 4; ++column)
-                m[row][column] = node.matrix[4 * column + row];
+                m[row][column] = matrix[4 * column + row];
         return m;
     }
-    if (node.rotation.size() == 4) {
-        const double x = node.rotation[0], y = node.rotation[1], z = node.rotation[2], w = node.rotation[3];
+    if (const auto rotation = file.numbers(node, "rotation", 4, place); !rotation.empty()) {
+        const double x = rotation[0], y = rotation[1], z = rotation[2], w = rotation[3];
         m = {{{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), 0},
               {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), 0},
               {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y), 0}}};
     }
+    const auto scale = file.numbers(node, "scale", 3, place), translation = file.numbers(node, "translation", 3, place);
     for (std::size_t row = 0; row < 3; ++row) {
-        for (std::size_t column = 0; node.scale.size() == 3 && column < 3; ++column)
-            m[row][column] *= node.scale[column];
-        if (node.translation.size() == 3) m[row][3] = node.translation[row];
+        for (std::size_t column = 0; !scale.empty() && column < 3; ++column)
+            m[row][column] *= scale[column];
+        if (!translation.empty()) m[row][3] = translation[row];
     }
     return m;
 }
 
 // The triangles of a primitive; empty of points and lines.
-std::vector<std::array<std::size_t, 3>> triangles_of(const MeshSource& source, int mode, std::size_t corners,
+std::vector<std::array<std::size_t, 3>> triangles_of(const MeshSource& source, std::uint64_t mode, std::size_t corners,
                                                      const std::string& place)
 {
     std::vector<std::array<std::size_t, 3>> triangles;
-    const bool is_strip = mode == TINYGLTF_MODE_TRIANGLE_STRIP, is_fan = mode == TINYGLTF_MODE_TRIANGLE_FAN;
+    const bool is_strip = mode == 5, is_fan = mode == 6;
     if (is_strip || is_fan) {
         for (std::size_t i = 2; i < corners; ++i)
             triangles.push_back(is_fan ? std::array{std::size_t{0}, i - 1, i}
                                        : std::array{i - 2 + i % 2, i - 1 - i % 2, i});
-    } else if (mode == TINYGLTF_MODE_TRIANGLES || mode == -1) {
+    } else if (mode == 4) {
         if (corners % 3 != 0) source.fail(place, fmt::format("its {} corners are not three a triangle", corners));
         for (std::size_t i = 0; i < corners; i += 3)
             triangles.push_back({i, i + 1, i + 2});
@@ -240,91 +80,164 @@ std::vector<std::array<std::size_t, 3>> triangles_of(const MeshSource& source, i
 }
 
 // What is not finite stays as it is, to be refused by its own coordinate.
-Float3 placed(const Matrix& matrix, const Values& positions, std::size_t i)
+Double3 placed(const Matrix& matrix, Double3 at)
 {
-    const Double3 at{positions.at(i, 0), positions.at(i, 1), positions.at(i, 2)};
-    if (!std::isfinite(at.x) || !std::isfinite(at.y) || !std::isfinite(at.z)) return to_float(at);
+    if (!std::isfinite(at.x) || !std::isfinite(at.y) || !std::isfinite(at.z)) return at;
     const auto coordinate = [&](std::size_t row) {
         return matrix[row][0] * at.x + matrix[row][1] * at.y + matrix[row][2] * at.z + matrix[row][3];
     };
-    return to_float(Double3{coordinate(0), coordinate(1), coordinate(2)});
+    return {coordinate(0), coordinate(1), coordinate(2)};
 }
 
 constexpr std::size_t max_vertices = std::size_t{1} << 28;
 
-void add_primitive(MeshSource& source, const tinygltf::Model& model, const tinygltf::Primitive& primitive,
-                   const Matrix& matrix, const std::string& place)
-{
-    const auto attribute = primitive.attributes.find("POSITION");
-    if (attribute == primitive.attributes.end()) return;
-    const Values positions(source, model, attribute->second, TINYGLTF_TYPE_VEC3, place + ", positions");
-    const std::size_t first = source.soup().mesh.vertices.size();
-    if (positions.count() > max_vertices - first) // nodes may name the same mesh again and again
-        source.fail(place, fmt::format("with all its nodes the file has more than {} vertices", max_vertices));
-    for (std::size_t i = 0; i < positions.count(); ++i)
-        source.add_vertex(placed(matrix, positions, i), fmt::format("{}, vertex {}", place, i));
-    std::optional<Values> indices;
-    if (primitive.indices >= 0)
-        indices.emplace(source, model, primitive.indices, TINYGLTF_TYPE_SCALAR, place + ", indices");
-    if (indices && indices->component_type() == TINYGLTF_COMPONENT_TYPE_FLOAT)
-        source.fail(place, "its indices are not whole numbers");
-    const bool is_mirrored = determinant(matrix) < 0;
-    const std::size_t corners = indices ? indices->count() : positions.count();
-    for (auto triangle : triangles_of(source, primitive.mode, corners, place)) {
-        if (is_mirrored) std::swap(triangle[1], triangle[2]);
-        std::vector<std::int64_t> face;
-        for (const std::size_t corner : triangle) {
-            const double index = indices ? indices->at(corner, 0) : static_cast<double>(corner);
-            if (!(index >= 0 && index < static_cast<double>(positions.count())))
-                source.fail(place, fmt::format("corner {} names vertex {} of {}", corner, index, positions.count()));
-            face.push_back(static_cast<std::int64_t>(first) + static_cast<std::int64_t>(index));
-        }
-        source.add_face(face, source.soup().mesh.vertices.size(), place);
+// Adds the vertices and triangles of primitives.
+class Primitives {
+public:
+    Primitives(MeshSource& source, GltfFile& file) : source_(source), file_(file) {}
+
+    void add(const Json& primitive, const Matrix& matrix, const std::string& place)
+    {
+        const Json& attributes = member(primitive, "attributes");
+        if (member(attributes, "POSITION").is_null()) return;
+        const std::uint64_t positions = file_.integer(attributes, "POSITION", {}, place);
+        const Json& draco = extension(primitive, "KHR_draco_mesh_compression");
+        const bool has_plain =
+            !member(file_.element("accessors", positions, place, "accessor"), "bufferView").is_null();
+        if (draco.is_null() || has_plain)
+            add_plain(primitive, positions, matrix, place);
+        else
+            add_draco(draco, matrix, place);
     }
+
+private:
+    void add_plain(const Json& primitive, std::uint64_t accessor, const Matrix& matrix, const std::string& place)
+    {
+        const GltfValues positions(file_, accessor, 3, place + ", positions");
+        add_vertices(positions.count(), matrix, place, [&](std::size_t i) {
+            return Double3{positions.at(i, 0), positions.at(i, 1), positions.at(i, 2)};
+        });
+        std::optional<GltfValues> indices;
+        if (!member(primitive, "indices").is_null())
+            indices.emplace(file_, file_.integer(primitive, "indices", {}, place), 1, place + ", indices");
+        if (indices && !indices->has_whole_numbers()) source_.fail(place, "its indices are not whole numbers");
+        const std::uint64_t mode = file_.integer(primitive, "mode", 4, place);
+        const std::size_t corners = indices ? indices->count() : positions.count();
+        for (const auto& triangle : triangles_of(source_, mode, corners, place)) {
+            std::array<std::size_t, 3> vertices{};
+            for (std::size_t i = 0; i < 3; ++i) {
+                const double index = indices ? indices->at(triangle[i], 0) : static_cast<double>(triangle[i]);
+                if (!(index >= 0 && index < static_cast<double>(positions.count())))
+                    source_.fail(place,
+                                 fmt::format("corner {} names vertex {} of {}", triangle[i], index, positions.count()));
+                vertices[i] = static_cast<std::size_t>(index);
+            }
+            add_triangle(vertices, positions.count(), matrix, place);
+        }
+    }
+    void add_draco(const Json& draco, const Matrix& matrix, const std::string& place)
+    {
+        const std::uint64_t attribute = file_.integer(member(draco, "attributes"), "POSITION", {}, place);
+        const std::uint64_t view = file_.integer(draco, "bufferView", {}, place);
+        const DracoMesh mesh = read_draco(source_, file_.view(view, 0, place), attribute, place);
+        add_vertices(mesh.positions.size(), matrix, place, [&](std::size_t i) { return mesh.positions[i]; });
+        for (const std::array<std::size_t, 3>& triangle : mesh.triangles)
+            add_triangle(triangle, mesh.positions.size(), matrix, place);
+    }
+    template <class Position>
+    void add_vertices(std::size_t count, const Matrix& matrix, const std::string& place, const Position& position)
+    {
+        if (count > max_vertices - source_.vertex_count()) // nodes may name the same mesh again and again
+            source_.fail(place, fmt::format("with all its nodes the file has more than {} vertices", max_vertices));
+        for (std::size_t i = 0; i < count; ++i)
+            source_.add_vertex(placed(matrix, position(i)), fmt::format("{}, vertex {}", place, i));
+    }
+    // Of the vertices that were added last.
+    void add_triangle(std::array<std::size_t, 3> triangle, std::size_t count, const Matrix& matrix,
+                      const std::string& place)
+    {
+        if (determinant(matrix) < 0) std::swap(triangle[1], triangle[2]);
+        std::vector<std::int64_t> face;
+        for (const std::size_t vertex : triangle)
+            face.push_back(static_cast<std::int64_t>(source_.vertex_count() - count + vertex));
+        source_.add_face(face, source_.vertex_count(), place);
+    }
+
+    MeshSource& source_;
+    GltfFile& file_;
+};
+
+// The numbers in a list of an object.
+std::vector<std::uint64_t> indices_of(const GltfFile& file, const Json& object, const char* key,
+                                      const std::string& place)
+{
+    std::vector<std::uint64_t> indices;
+    for (const Json& index : member(object, key)) {
+        if (!index.is_number_unsigned())
+            file.source().fail(place, fmt::format("its {} are not all whole numbers", key));
+        indices.push_back(index.get<std::uint64_t>());
+    }
+    return indices;
 }
 
 // The nodes that the file shows: those of its scene, or all without a parent.
-std::vector<int> roots_of(const MeshSource& source, const tinygltf::Model& model)
+std::vector<std::uint64_t> roots_of(const GltfFile& file)
 {
-    if (!model.scenes.empty())
-        return element_at(source, model.scenes, std::max(model.defaultScene, 0), "file", "scene").nodes;
-    std::vector<bool> is_child(model.nodes.size(), false);
-    for (const tinygltf::Node& node : model.nodes)
-        for (const int child : node.children)
-            if (child >= 0 && static_cast<std::size_t>(child) < is_child.size())
-                is_child[static_cast<std::size_t>(child)] = true;
-    std::vector<int> roots;
+    if (!file.list("scenes").empty()) {
+        const std::uint64_t scene = file.integer(file.root(), "scene", 0, "file");
+        return indices_of(file, file.element("scenes", scene, "file", "scene"), "nodes", "scene");
+    }
+    const Json& nodes = file.list("nodes");
+    std::vector<bool> is_child(nodes.size(), false);
+    for (const Json& node : nodes)
+        for (const std::uint64_t child : indices_of(file, node, "children", "file"))
+            if (child < is_child.size()) is_child[static_cast<std::size_t>(child)] = true;
+    std::vector<std::uint64_t> roots;
     for (std::size_t i = 0; i < is_child.size(); ++i)
-        if (!is_child[i]) roots.push_back(static_cast<int>(i));
+        if (!is_child[i]) roots.push_back(i);
     return roots;
+}
+
+bool is_hidden(const Json& node)
+{
+    return member(extension(node, "KHR_node_visibility"), "visible") == false;
+}
+
+void add_mesh(GltfFile& file, Primitives& primitives, const Json& node, const Matrix& matrix, const std::string& place)
+{
+    if (!extension(node, "EXT_mesh_gpu_instancing").is_null())
+        file.source().fail(place, "it uses the extension EXT_mesh_gpu_instancing, which is not read",
+                           "export it again with a node for each instance");
+    const std::uint64_t number = file.integer(node, "mesh", {}, place);
+    const Json& list = member(file.element("meshes", number, place, "mesh"), "primitives");
+    for (std::size_t i = 0; list.is_array() && i < list.size(); ++i)
+        primitives.add(list[i], matrix, fmt::format("{}, mesh {}, primitive {}", place, number, i));
 }
 
 } // namespace
 
 void read_gltf(MeshSource& source)
 {
-    const tinygltf::Model model = parse(source);
-    require_plain(source, model);
-    std::vector<std::pair<int, Matrix>> open;
-    for (const int root : roots_of(source, model))
-        open.emplace_back(root, matrix_of({}));
+    GltfFile file(source);
+    Primitives primitives(source, file);
+    std::vector<std::pair<std::uint64_t, Matrix>> open;
+    for (const std::uint64_t root : roots_of(file))
+        open.emplace_back(root, identity);
     std::reverse(open.begin(), open.end());
-    std::vector<bool> seen(model.nodes.size(), false);
+    std::vector<bool> seen(file.list("nodes").size(), false);
     while (!open.empty()) {
         const auto [index, outer] = open.back();
         open.pop_back();
         const std::string place = fmt::format("node {}", index);
-        const tinygltf::Node& node = element_at(source, model.nodes, index, place, "node");
+        const Json& node = file.element("nodes", index, place, "node");
         if (seen[static_cast<std::size_t>(index)]) source.fail(place, "it is reached by two ways");
         seen[static_cast<std::size_t>(index)] = true;
-        const Matrix matrix = product(outer, matrix_of(node));
-        for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
+        if (is_hidden(node)) continue;
+        const Matrix matrix = product(outer, matrix_of(file, node, place));
+        const std::vector<std::uint64_t> children = indices_of(file, node, "children", place);
+        for (auto child = children.rbegin(); child != children.rend(); ++child)
             open.emplace_back(*child, matrix);
-        if (node.mesh < 0) continue;
-        const tinygltf::Mesh& mesh = element_at(source, model.meshes, node.mesh, place, "mesh");
-        for (std::size_t i = 0; i < mesh.primitives.size(); ++i)
-            add_primitive(source, model, mesh.primitives[i], matrix,
-                          fmt::format("node {}, mesh {}, primitive {}", index, node.mesh, i));
+        if (!member(node, "mesh").is_null()) add_mesh(file, primitives, node, matrix, place);
     }
 }
 

@@ -47,6 +47,30 @@ bool next_statement(LineReader& lines, std::string& statement)
     return !statement.empty();
 }
 
+// Programs add keywords of their own, for example vertex colours. A file without any vertex is of another format.
+class UnknownKeywords {
+public:
+    void add(const MeshSource& source, std::string_view keyword, const LineReader& lines)
+    {
+        if (count_++ == 0)
+            first_ = fmt::format("'{:.40}' is not a keyword of OBJ", keyword), place_ = lines.place("statement");
+        if (keyword.find_first_not_of(letters) != std::string_view::npos) require_none(source);
+    }
+    void require_none(const MeshSource& source) const
+    {
+        if (count_ > 0) source.fail(place_, first_);
+    }
+    void note(MeshSource& source) const
+    {
+        if (count_ > 0) source.note(fmt::format("{} statements skipped, the first in {}: {}", count_, place_, first_));
+    }
+
+private:
+    static constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_";
+    std::uint64_t count_ = 0;
+    std::string first_, place_;
+};
+
 } // namespace
 
 void read_obj(MeshSource& source)
@@ -54,26 +78,27 @@ void read_obj(MeshSource& source)
     LineReader lines(source.bytes());
     std::vector<Face> faces; // checked at the end: a face may name vertices that come later
     std::string statement;
+    UnknownKeywords unknown;
     while (next_statement(lines, statement)) {
         const Words words = split_words(statement);
         if (words.empty()) continue;
-        const auto& vertices = source.soup().mesh.vertices;
-        if (words.front() == "v") {
-            const auto place = lines.place(fmt::format("vertex {}", vertices.size() + 1));
+        const std::string keyword = lower_case(words.front());
+        if (keyword == "v") {
+            const auto place = lines.place(fmt::format("vertex {}", source.vertex_count() + 1));
             source.add_vertex(parse_position(source, words, 1, place), place);
-        } else if (words.front() == "f" || words.front() == "fo") {
+        } else if (keyword == "f" || keyword == "fo") {
             Face face{{}, lines.place(fmt::format("face {}", faces.size() + 1))};
-            if (words.size() < 4) source.fail(face.place, "it has fewer than three corners");
             for (std::size_t i = 1; i < words.size(); ++i)
-                face.corners.push_back(parse_corner(source, words[i], vertices.size(), face.place));
+                face.corners.push_back(parse_corner(source, words[i], source.vertex_count(), face.place));
             faces.push_back(std::move(face));
-        } else if (std::find(ignored_keywords.begin(), ignored_keywords.end(), words.front()) ==
-                   ignored_keywords.end()) {
-            source.fail(lines.place("statement"), fmt::format("'{:.40}' is not a keyword of OBJ", words.front()));
+        } else if (std::find(ignored_keywords.begin(), ignored_keywords.end(), keyword) == ignored_keywords.end()) {
+            unknown.add(source, words.front(), lines);
         }
     }
+    if (source.vertex_count() == 0) unknown.require_none(source);
     for (const Face& face : faces)
-        source.add_face(face.corners, source.soup().mesh.vertices.size(), face.place);
+        source.add_face(face.corners, source.vertex_count(), face.place);
+    unknown.note(source);
 }
 
 } // namespace tetrace

@@ -112,22 +112,22 @@ public:
     ValueReader(const MeshSource& source, const Header& header, LineReader& lines)
         : source_(source), encoding_(header.encoding), lines_(lines), at_(lines.offset())
     {
+        std::uint64_t elements = 0;
+        for (const Element& element : header.elements)
+            elements += static_cast<std::uint64_t>(element.count);
+        by_words_ = encoding_ == Encoding::ascii && lines.has_fewer_lines(elements);
     }
 
     void begin_element(const std::string& place)
     {
         place_ = place;
-        if (encoding_ != Encoding::ascii) return;
+        if (encoding_ != Encoding::ascii || (by_words_ && word_ < words_.size())) return;
         if (!lines_.next(words_)) source_.fail(lines_.place(place_), "the file ends before it");
         word_ = 0;
     }
-    // Coordinates are rounded from decimal text once, to float.
-    float coordinate(Scalar type)
+    double coordinate(Scalar type)
     {
-        if (encoding_ != Encoding::ascii) return narrow(binary(type));
-        const auto value = parse_float(next_word());
-        if (!value) source_.fail(place(), "a coordinate is not a number");
-        return *value;
+        return encoding_ == Encoding::ascii ? parse_coordinate(source_, next_word(), place()) : binary(type);
     }
     std::int64_t integer(Scalar type)
     {
@@ -148,10 +148,10 @@ public:
             source_.fail(place(), fmt::format("a list of {} entries is longer than the file", length));
         return length;
     }
-    void require_end()
+    [[nodiscard]] bool has_more()
     {
-        const bool more = encoding_ == Encoding::ascii ? lines_.next(words_) : at_ != source_.bytes().size();
-        if (more) source_.fail("end", "data follow the last announced element");
+        if (encoding_ != Encoding::ascii) return at_ != source_.bytes().size();
+        return (by_words_ && word_ < words_.size()) || lines_.next(words_);
     }
     [[nodiscard]] std::string place() const
     {
@@ -159,7 +159,6 @@ public:
     }
 
 private:
-    static float narrow(double value) { return static_cast<float>(value); } // outside the range: infinite, and refused
     std::int64_t whole(double value) const
     {
         if (!(std::abs(value) < 0x1p62) || value != std::nearbyint(value))
@@ -168,7 +167,11 @@ private:
     }
     std::string_view next_word()
     {
-        if (word_ == words_.size()) source_.fail(place(), "the line has too few values");
+        if (word_ == words_.size()) {
+            if (!by_words_) source_.fail(place(), "the line has too few values");
+            if (!lines_.next(words_)) source_.fail(place(), "the file ends inside it");
+            word_ = 0;
+        }
         return words_[word_++];
     }
     double binary(Scalar type)
@@ -199,6 +202,7 @@ private:
     const MeshSource& source_;
     Encoding encoding_;
     LineReader& lines_;
+    bool by_words_ = false; // ascii: elements do not begin on lines of their own
     Words words_;
     std::size_t word_ = 0;
     std::size_t at_;
@@ -214,16 +218,16 @@ void skip_property(ValueReader& values, const Property& property)
 
 void read_vertex(MeshSource& source, ValueReader& values, const Element& element)
 {
-    Float3 position{NAN, NAN, NAN};
+    std::array<double, 3> position{NAN, NAN, NAN};
     for (const Property& property : element.properties) {
         const auto axis =
             property.name.size() == 1 ? std::string_view("xyz").find(property.name) : std::string_view::npos;
         if (axis == std::string_view::npos || property.list_size)
             skip_property(values, property);
         else
-            position[static_cast<int>(axis)] = values.coordinate(property.type);
+            position[axis] = values.coordinate(property.type);
     }
-    source.add_vertex(position, values.place());
+    source.add_vertex({position[0], position[1], position[2]}, values.place());
 }
 
 // The indices of vertices of a face, or of a strip of triangles.
@@ -315,7 +319,7 @@ void read_ply(MeshSource& source)
                     skip_property(values, property);
         }
     }
-    values.require_end();
+    if (values.has_more()) source.note("data after the last announced element were ignored");
 }
 
 } // namespace tetrace

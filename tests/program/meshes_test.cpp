@@ -3,6 +3,7 @@
 #include "tests/support/program_fixture.h"
 
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -69,6 +70,42 @@ TEST_F(Meshes, nested_open_and_separate_surfaces_are_traced_right_on_every_struc
     write("one.off", {{{0, 0, 0}, {1, 0, 0.25f}, {0, 1, 0.5f}}, {{0, 1, 2}}});
     for (const char* const tets : {"rays", "cdt"})
         expect_right("nested.off,open.off,apart.off,one.off", tets, 7);
+}
+
+TEST_F(Meshes, far_from_the_origin_keep_their_shape_and_say_where_they_are)
+{
+    // An octahedron of 2 m in UTM coordinates, whose floats are half a metre apart.
+    std::string text = "OFF\n6 8 0\n";
+    for (const auto& [x, y, z] :
+         std::vector<std::array<double, 3>>{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}})
+        text += fmt::format("{} {} {}\n", 451234.25 + x, 5412345.75 + y, 320.5 + z);
+    write_file(folder_ / "far,away.off",
+               text + "3 0 2 4\n3 2 1 4\n3 1 3 4\n3 3 0 4\n3 2 0 5\n3 1 2 5\n3 3 1 5\n3 0 3 5\n");
+    for (const std::string note :
+         {"the centre of its bounding box, was subtracted", "was subtracted from its coordinates when"}) {
+        const Ended ended = run("build --scene far,away.off --tets cdt --size 32 --out a.json");
+        ASSERT_EQ(ended.code, 0) << ended.errors;
+        EXPECT_TRUE(contains(ended.errors, note));
+        EXPECT_TRUE(contains(ended.out,
+                             "far,away: cameras are placed in radii of 1.73205081 from its centre, (451234.25, "
+                             "5412345.75, 320.5), in the mesh's coordinates."));
+        const nlohmann::json scene = builds()[0]["scene_record"];
+        const nlohmann::json centre = {451234.25, 5412345.75, 320.5};
+        EXPECT_EQ(scene["centre"], centre);
+        EXPECT_EQ(scene["subtracted"], centre);
+        EXPECT_FALSE(scene.contains("rounding")) << "what is left are floats";
+    }
+}
+
+TEST_F(Meshes, come_from_pipes)
+{
+    write("ball.off", sphere(1));
+    const Ended ended = run("build --scene /dev/stdin --tets rays,cdt --size 32 --out a.json < ball.off");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    EXPECT_EQ(builds().size(), 2u) << "both of one reading";
+    EXPECT_EQ(builds()[1]["scene_record"]["triangles"], 32);
+    const Ended empty = run("build --scene /dev/stdin < /dev/null");
+    EXPECT_EQ(empty.code, 2) << empty.errors;
 }
 
 TEST_F(Meshes, repaired_surfaces_are_traced_right_on_every_structure)

@@ -76,6 +76,13 @@ TEST(Options, lists_take_commas_and_repetition)
     EXPECT_EQ(options.scenes, (std::vector<std::string>{"cubes", "banana", "bunny"}));
     EXPECT_EQ(options.layouts, (std::vector<Layout>{Layout::tet80, Layout::tet96}));
     EXPECT_TRUE(contains(rejection({"bench", "--scene", "cubes,,bunny"}), "empty value"));
+    const TemporaryFolder folder;
+    const std::string file = folder / "a,b,,c.obj";
+    write_file(file, "v 0 0 0\n");
+    using Names = std::vector<std::string>;
+    EXPECT_EQ(parse_options({"bench", "--scene", file}).scenes, Names{file}) << "a name that is a file is a file";
+    EXPECT_EQ(parse_options({"bench", "--scene", "cubes," + file + ",banana"}).scenes,
+              (Names{"cubes", file, "banana"}));
 }
 
 TEST(Options, an_unknown_option_is_answered_with_the_accepted_ones)

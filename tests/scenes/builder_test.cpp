@@ -4,6 +4,7 @@
 #include "tests/support/builder_meshes.h"
 
 #include <cstdlib>
+#include <fmt/format.h>
 #include <sys/wait.h>
 
 using namespace tetrace;
@@ -110,6 +111,54 @@ TEST_F(BuilderProgram, notes_what_it_dropped)
     EXPECT_TRUE(contains(ended.errors, "note: 1 triangles without area dropped\n"));
     EXPECT_TRUE(contains(ended.errors, "note: 1 duplicate triangles dropped\n"));
     EXPECT_EQ(read_scene(folder_ / "out.tet").build.duplicate_triangles, 1u);
+}
+
+TEST_F(BuilderProgram, subtracts_the_centre_of_a_mesh_far_from_the_origin_and_keeps_it)
+{
+    TriangleMesh ball = sphere(2);
+    std::string text = fmt::format("OFF\n{} {} 0\n", ball.vertices.size(), ball.triangles.size());
+    for (const Float3 v : ball.vertices) // UTM coordinates in metres, of an object of 2 m
+        text += fmt::format("{:.6f} {:.6f} {:.6f}\n", 451234.1 + static_cast<double>(v.x),
+                            5412345.9 + static_cast<double>(v.y), 320.7 + static_cast<double>(v.z));
+    for (const auto& [a, b, c] : ball.triangles)
+        text += fmt::format("3 {} {} {}\n", a, b, c);
+    const auto ended = run_on(write("survey.off", text));
+    ASSERT_EQ(ended.code, BUILDER_GOOD) << ended.errors;
+    EXPECT_TRUE(
+        contains(ended.errors, "note: the coordinates are large for the mesh's size: (451234.1, 5412345.9, 320.7"));
+    const Scene scene = read_scene(folder_ / "out.tet");
+    expect_sound(scene);
+    EXPECT_NEAR(length(scene.build.centre - Double3{451234.1, 5412345.9, 320.7}), 0, 1e-6);
+    EXPECT_GT(scene.build.rounding, 0);
+    EXPECT_LT(scene.build.rounding, 1e-6);
+    const BoundingSphere found = source_sphere(scene);
+    EXPECT_NEAR(length(found.centre - Double3{451234.1, 5412345.9, 320.7}), 0, 1e-5);
+    EXPECT_NEAR(found.radius, bounding_sphere(ball).radius, 1e-5);
+}
+
+TEST_F(BuilderProgram, says_how_far_rounding_moved_vertices_when_it_merged_some)
+{
+    const std::string faces = "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n", near = "0 0 0\n1.00000000001 0 0\n0 1 0\n0 0 1\n",
+                      again = "1 0 0\n";
+    EXPECT_FALSE(contains(run_on(write("a.off", "OFF\n4 4 0\n" + near + faces), "--mesh-only").errors, "rounding"));
+    const std::string text = "OFF\n5 5 0\n" + near + again + faces + "3 0 4 2\n";
+    const auto ended = run_on(write("b.off", text), "--mesh-only");
+    EXPECT_TRUE(contains(ended.errors, "note: rounding to float put 1 vertices at the place of another; it moved "
+                                       "vertices by at most 1e-11, 5.8e-12 of the bounding box's diagonal"))
+        << ended.errors;
+}
+
+TEST_F(BuilderProgram, closes_the_gaps_that_triangles_without_area_leave)
+{
+    // A box with a vertex in the middle of an edge, which only one of the two sides has; a triangle without area joins
+    // them.
+    const auto ended =
+        run_on(write("box.obj", "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 0 0 1\nv 2 0 1\nv 2 2 1\nv 0 2 1\n"
+                                "v 1 0 0\nf 4 3 2 1\nf 1 2 9\nf 5 6 7 8\nf 1 9 2 6 5\nf 2 3 7 6\n"
+                                "f 3 4 8 7\nf 4 1 5 8\n"));
+    ASSERT_EQ(ended.code, BUILDER_GOOD) << ended.errors;
+    EXPECT_TRUE(contains(ended.errors, "note: 1 triangles split where a neighbour has no area"));
+    EXPECT_EQ(read_scene(folder_ / "out.tet").mesh.triangles.size(), 14u);
 }
 
 TEST_F(BuilderProgram, answers_help_and_version)

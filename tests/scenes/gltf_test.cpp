@@ -4,7 +4,10 @@
 #include "tests/support/builder_meshes.h"
 #include "tests/support/random.h"
 
+#include <algorithm>
+#include <charconv>
 #include <cstring>
+#include <filesystem>
 #include <fmt/format.h>
 
 using namespace tetrace;
@@ -61,6 +64,35 @@ std::string json_of(const std::string& nodes, const std::string& primitive = R"(
         nodes, primitive, more);
 }
 
+/// The tetrahedron by `draco_encoder -qp 0 -cl 0`.
+std::string tetrahedron_draco()
+{
+    constexpr std::string_view hex =
+        "445241434f02020100000004040100010200020302010300030101010009030000000000000000000000000000000000"
+        "00000000803f000000000000803f000000000000000000000000000000000000803f";
+    std::string bytes;
+    for (std::size_t i = 0; i < hex.size(); i += 2) {
+        unsigned char byte = 0;
+        std::from_chars(hex.data() + i, hex.data() + i + 2, byte, 16);
+        bytes += static_cast<char>(byte);
+    }
+    return bytes;
+}
+
+/// The corners' places of each triangle, each from its smallest on, sorted.
+std::vector<std::array<std::array<float, 3>, 3>> triangles_in_place(const TriangleMesh& mesh)
+{
+    std::vector<std::array<std::array<float, 3>, 3>> list;
+    for (const auto& triangle : mesh.triangles) {
+        auto& corners = list.emplace_back();
+        for (std::size_t i = 0; i < 3; ++i)
+            corners[i] = {mesh.vertices[triangle[i]].x, mesh.vertices[triangle[i]].y, mesh.vertices[triangle[i]].z};
+        std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    }
+    std::sort(list.begin(), list.end());
+    return list;
+}
+
 MeshSoup read(const std::string& bytes, const std::string& name = "a.glb")
 {
     return parse_mesh(name, bytes);
@@ -79,24 +111,16 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 class Gltf : public testing::Test {
 protected:
-    void SetUp() override
+    /// The plain file with a change of its JSON.
+    [[nodiscard]] static std::string changed(const std::string& from, const std::string& to)
     {
-        if (contains(refusal(plain_), "built without tinygltf")) GTEST_SKIP() << "tetrace-builder does not read glTF";
+        return glb(replaced(json_of(R"({"mesh":0})"), from, to), tetrahedron_data());
     }
 
     std::string plain_ = glb(json_of(R"({"mesh":0})"), tetrahedron_data());
 };
 
 } // namespace
-
-TEST(NoGltf, is_reported_with_its_package)
-{
-    const std::string text = refusal("glTF");
-    EXPECT_TRUE(contains(text, "invalid_input: reading a.glb: ")) << text;
-    if (contains(text, "built without tinygltf")) {
-        EXPECT_TRUE(contains(text, "install libtinygltf-dev"));
-    }
-}
 
 TEST_F(Gltf, gives_the_same_triangles_as_any_other_format)
 {
@@ -120,9 +144,132 @@ TEST_F(Gltf, reads_json_with_its_data_inside)
     const std::string json = replaced(json_of(R"({"mesh":0})"), R"("byteLength":72)",
                                       R"("byteLength":72,"uri":"data:application/octet-stream;base64,)" + base64 + '"');
     EXPECT_EQ(read(json, "a.gltf").mesh, tetrahedron());
-    const std::string outside =
-        replaced(json_of(R"({"mesh":0})"), R"("byteLength":72)", R"("byteLength":72,"uri":"/etc/passwd")");
-    EXPECT_TRUE(contains(refusal(outside, "a.gltf"), "a buffer is in another file; export it as .glb"));
+}
+
+TEST_F(Gltf, reads_buffers_in_files_of_the_same_folder)
+{
+    const TemporaryFolder folder;
+    const auto json = [&](const std::string& uri) {
+        return replaced(json_of(R"({"mesh":0})"), R"("byteLength":72)", R"("byteLength":72,"uri":")" + uri + '"');
+    };
+    const auto read_beside = [&](const std::string& uri) {
+        write_file(folder / "a.gltf", json(uri));
+        return read_mesh(folder / "a.gltf");
+    };
+    const auto refusal_beside = [&](const std::string& uri) { return error_of([&] { (void)read_beside(uri); }); };
+    write_file(folder / "my box+1.bin", tetrahedron_data() + "more than the buffer's length");
+    const MeshSoup soup = read_beside("my%20box+1.bin");
+    EXPECT_EQ(soup.mesh, tetrahedron());
+    std::string other = tetrahedron_data();
+    other[60] ^= 1;
+    write_file(folder / "my box+1.bin", other);
+    EXPECT_NE(read_beside("my%20box+1.bin").source_hash, soup.source_hash) << "the buffer is part of the mesh";
+
+    std::filesystem::create_directory(folder / "sub");
+    write_file(folder / "sub/box.bin", tetrahedron_data());
+    write_file(folder / "short.bin", tetrahedron_data().substr(1));
+    for (const std::string uri : {"sub/box.bin", "sub%2Fbox.bin", "../box.bin", "/etc/passwd", "..", "", "a%00b"})
+        EXPECT_TRUE(contains(refusal_beside(uri), "is not a file of the same folder; export it as .glb")) << uri;
+    EXPECT_TRUE(contains(refusal_beside("none.bin"), "none.bin' cannot be read; copy it into the folder"));
+    EXPECT_TRUE(contains(refusal_beside("sub"), "cannot be read"));
+    EXPECT_TRUE(contains(refusal_beside("short.bin"), "buffer 0 has 71 bytes, not 72"));
+    EXPECT_TRUE(contains(refusal(json("my%20box+1.bin"), "a.gltf"), "is not a file of the same folder"))
+        << "bytes alone have no folder";
+    // A buffer that no triangle needs may be missing.
+    write_file(folder / "a.gltf",
+               replaced(json("short.bin"), R"("buffers":[)", R"("buffers":[{"byteLength":9,"uri":"none.bin"},)"));
+    EXPECT_TRUE(contains(error_of([&] { (void)read_mesh(folder / "a.gltf"); }), "none.bin"));
+    write_file(folder / "short.bin", tetrahedron_data());
+    write_file(folder / "a.gltf", replaced(json("short.bin"), R"("uri":"short.bin"})",
+                                           R"("uri":"short.bin"},{"byteLength":9,"uri":"none.bin"})"));
+    EXPECT_EQ(read_mesh(folder / "a.gltf").mesh, tetrahedron());
+}
+
+TEST_F(Gltf, reads_sparse_accessors)
+{
+    // Vertex 3 is moved to (7, 8, 9), by two more buffer views; and the same from zeros, without a view.
+    std::string data = tetrahedron_data();
+    put(data, std::uint32_t{3});
+    for (const float x : {7.0f, 8.0f, 9.0f})
+        put(data, x);
+    const auto sparse = [&](const std::string& index, const std::string& base = R"("bufferView":0,)") {
+        std::string json = replaced(json_of(R"({"mesh":0})"), R"({"buffer":0,"byteOffset":48,"byteLength":24})",
+                                    R"({"buffer":0,"byteOffset":48,"byteLength":24},{"buffer":0,"byteOffset":72,)"
+                                    R"("byteLength":4},{"buffer":0,"byteOffset":76,"byteLength":12})");
+        json = replaced(json, R"("byteLength":72)", R"("byteLength":88)");
+        json = replaced(json, R"("min":[0,0,0])",
+                        R"("sparse":{"count":1,"indices":{"bufferView":2,"componentType":)" + index +
+                            R"(},"values":{"bufferView":3}},"min":[0,0,0])");
+        return glb(replaced(json, R"("bufferView":0,)", base), data);
+    };
+    EXPECT_EQ(read(sparse("5125")).mesh.vertices, (std::vector<Float3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {7, 8, 9}}));
+    EXPECT_EQ(read(sparse("5121", "")).mesh.vertices,
+              (std::vector<Float3>{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {7, 8, 9}}));
+    EXPECT_TRUE(contains(refusal(sparse("5126")), "sparse indices"));
+    data.replace(72, 1, "\4");
+    EXPECT_TRUE(
+        contains(refusal(sparse("5125")), "entry 0 of its sparse indices, 4, does not rise, or is not below 4"));
+    EXPECT_TRUE(contains(refusal(changed(R"("bufferView":0,)", "")), "accessor 0 has no data"));
+}
+
+TEST_F(Gltf, looks_at_version_and_required_extensions_first)
+{
+    EXPECT_TRUE(contains(refusal(changed(R"("version":"2.0")", R"("version":"1.0")")),
+                         "it is glTF 1.0, which is not read; convert it to glTF 2.0"));
+    EXPECT_TRUE(contains(refusal(R"({"asset":{"version":"1.1"},"meshes":{"a":{}}})", "a.gltf"), "it is glTF 1.1"));
+    std::string first = plain_;
+    first[4] = 1;
+    EXPECT_TRUE(contains(refusal(first), "it is glTF 1.0"));
+    const auto required = [&](const std::string& name) {
+        return changed(R"("buffers")", R"("extensionsRequired":[")" + name + R"("],"buffers")");
+    };
+    for (const std::string name :
+         {"EXT_texture_webp", "KHR_texture_basisu", "MSFT_texture_dds", "EXT_texture_avif", "VRM", "KHR_xmp_json_ld",
+          "KHR_materials_variants", "KHR_node_visibility", "MSFT_lod", "KHR_animation_pointer",
+          "EXT_lights_image_based", "KHR_mesh_quantization"})
+        EXPECT_EQ(read(required(name)).mesh, tetrahedron()) << name;
+    for (const std::string name : {"CESIUM_RTC", "EXT_meshopt_compression", "KHR_draco_mesh_compressionX", "VRMX"})
+        EXPECT_TRUE(contains(refusal(required(name)),
+                             "it requires the extension " + name + ", which is not read; export it again as .glb"));
+}
+
+TEST_F(Gltf, honours_extensions_of_nodes)
+{
+    const auto node = [](const std::string& what) { return glb(json_of(what), tetrahedron_data()); };
+    const std::string hidden = R"({"mesh":0,"children":[1]},{"extensions":{"KHR_node_visibility":{"visible":false}},)"
+                               R"("mesh":0,"children":[2]},{"mesh":0})";
+    EXPECT_EQ(read(node(hidden)).mesh, tetrahedron()) << "a hidden node hides its children";
+    EXPECT_TRUE(contains(refusal(node(R"({"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{}}}})")),
+                         "node 0: it uses the extension EXT_mesh_gpu_instancing"));
+    EXPECT_EQ(read(changed(R"("buffers")", R"("extensionsUsed":["EXT_mesh_gpu_instancing"],"buffers")")).mesh,
+              tetrahedron());
+}
+
+TEST_F(Gltf, reads_draco_or_names_its_package)
+{
+    // The same tetrahedron by draco_encoder, as the only buffer view; and with plain accessors beside it.
+    const std::string draco = tetrahedron_draco();
+    const std::string use =
+        R"("extensions":{"KHR_draco_mesh_compression":{"bufferView":0,"attributes":{"POSITION":0}}},)";
+    std::string json = replaced(json_of(R"({"mesh":0})", use + R"("indices":1)"), R"("bufferView":0,"componentType")",
+                                R"("componentType")");
+    json = replaced(json, R"("bufferView":1,"componentType")", R"("componentType")");
+    json =
+        replaced(json, R"("bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":24}])",
+                 fmt::format(R"("bufferViews":[{{"buffer":0,"byteLength":{}}}])", draco.size()));
+    json = replaced(json, R"("byteLength":72)", fmt::format(R"("byteLength":{})", draco.size()));
+    if (const std::string error = refusal(glb(json, draco)); error.empty()) {
+        const TriangleMesh mesh = read(glb(json, draco)).mesh;
+        EXPECT_EQ(triangles_in_place(mesh), triangles_in_place(tetrahedron()));
+        const std::string damaged = glb(json, std::string(draco.size(), 'x'));
+        EXPECT_TRUE(contains(refusal(damaged), "its Draco data cannot be read"));
+        const std::string other = glb(replaced(json, R"({"POSITION":0}}})", R"({"POSITION":7}}})"), draco);
+        EXPECT_TRUE(contains(refusal(other), "lack the attribute 7"));
+    } else {
+        EXPECT_TRUE(contains(error, "install libdraco-dev")) << error;
+    }
+    EXPECT_EQ(read(glb(json_of(R"({"mesh":0})", use + R"("indices":1)"), tetrahedron_data())).mesh, tetrahedron())
+        << "plain accessors are read where they are there";
 }
 
 TEST_F(Gltf, puts_meshes_where_their_nodes_are)
@@ -162,11 +309,7 @@ TEST_F(Gltf, reads_strips_fans_and_triangles_without_indices)
 
 TEST_F(Gltf, refuses_what_it_would_read_wrongly)
 {
-    const auto refused = [&](const std::string& from, const std::string& to) {
-        return refusal(glb(replaced(json_of(R"({"mesh":0})"), from, to), tetrahedron_data()));
-    };
-    EXPECT_TRUE(contains(refused(R"("buffers")", R"("extensionsUsed":["KHR_draco_mesh_compression"],"buffers")"),
-                         "the extension KHR_draco_mesh_compression, which is not read; export it again as .glb"));
+    const auto refused = [&](const std::string& from, const std::string& to) { return refusal(changed(from, to)); };
     EXPECT_TRUE(contains(refused(R"("count":4)", R"("count":5)"), "5 elements are more than its buffer holds"));
     EXPECT_TRUE(contains(refused(R"("count":4)", R"("count":18446744073709551615)"), "more than its buffer"));
     EXPECT_TRUE(contains(refused(R"("count":4)", R"("count":2)"), "names vertex 2 of 2"));
@@ -179,7 +322,7 @@ TEST_F(Gltf, refuses_what_it_would_read_wrongly)
                          "not whole numbers"));
     EXPECT_TRUE(contains(refused(R"("mesh":0)", R"("mesh":0,"children":[0])"), "reached by two ways"));
     EXPECT_TRUE(contains(refused(R"("indices":1)", R"("mode":0)"), "it lacks triangles")) << "points";
-    EXPECT_TRUE(contains(refused(R"("version":"2.0")", R"("verson":"2.0")"), "reading a.glb"));
+    EXPECT_TRUE(contains(refused(R"("version":"2.0")", R"("verson":"2.0")"), "it lacks asset.version"));
     std::string nan = tetrahedron_data();
     nan.replace(4, 4, "\xff\xff\xff\xff");
     EXPECT_TRUE(contains(refusal(glb(json_of(R"({"mesh":0})"), nan)), "vertex 0: coordinate y is not a number"));

@@ -3,6 +3,8 @@
 #include "scenes/mesh_files.h"
 #include "tests/scenes/load_fixture.h"
 
+#include <sys/stat.h>
+#include <thread>
 #include <vector>
 
 using namespace tetrace;
@@ -137,4 +139,45 @@ TEST_F(Load, builds_the_banana_from_its_file)
     const std::string error = error_with("cat \"$2\" > " + (folder / "seen.off").string() + "; exit 11");
     EXPECT_TRUE(contains(error, "building scene banana from "));
     EXPECT_TRUE(read_text(folder / "seen.off").starts_with("OFF\n12502 25000 0\n"));
+}
+
+TEST_F(Load, reads_a_pipe_once_and_whole)
+{
+    const auto pipe = folder / "thing.off";
+    std::filesystem::remove(pipe);
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    EXPECT_EQ(why_not_available(pipe), "");
+    std::thread writer([&] { write_file(pipe, mesh_text); });
+    EXPECT_EQ(load().hash, scene_hash(expected()));
+    writer.join();
+    const std::string copy = read_text(folder / "runs");
+    EXPECT_TRUE(contains(copy, "--mesh " + (folder / "cache/tetrace/meshes/").string())) << copy;
+    EXPECT_TRUE(contains(copy, "/thing.off --out ")) << "with its extension";
+    EXPECT_TRUE(load().from_cache) << "nobody writes to it again";
+}
+
+TEST_F(Load, copies_what_only_this_process_has_open)
+{
+    EXPECT_TRUE(is_stream("/proc/self/cmdline"));
+    EXPECT_FALSE(is_stream(mesh));
+    EXPECT_FALSE(is_stream(folder.path()));
+    EXPECT_FALSE(is_stream("/dev/zero"));
+    EXPECT_TRUE(
+        contains(error_of([] { (void)spooled_mesh("/proc/self/fd/none"); }), "reading mesh /proc/self/fd/none: "));
+}
+
+TEST_F(Load, builds_again_where_a_buffer_of_gltf_has_changed)
+{
+    mesh = folder / "thing.gltf";
+    request.name = mesh.string();
+    mesh_text = R"({"buffers":[{"uri":"a%20b.bin"},{"uri":"data:,x"},{"uri":"../thing.off"}]})";
+    write_file(mesh, mesh_text);
+    for (const std::string buffer : {"first", "second"}) {
+        write_file(folder / "a b.bin", buffer);
+        Scene made = expected();
+        made.build.source_hash = hash_of(mesh_text + buffer);
+        write_scene(prepared, made);
+        EXPECT_FALSE(load().from_cache) << buffer;
+        EXPECT_TRUE(load().from_cache) << buffer;
+    }
 }

@@ -1,6 +1,7 @@
 // What is read from mesh files of every format. What is refused: mesh_refusal_test.cpp.
 #include "tests/scenes/mesh_samples.h"
 
+#include <algorithm>
 #include <random>
 
 using namespace tetrace;
@@ -46,58 +47,14 @@ TEST(MeshReader, cuts_polygons_into_fans)
     EXPECT_EQ(read("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n").triangles, fan);
 }
 
-TEST(MeshReader, cuts_polygons_that_are_not_convex_without_overlap)
+TEST(MeshReader, skips_and_counts_faces_that_are_not_polygons)
 {
-    // An arrowhead, whose fan from the first corner would lie outside it; in each plane, and turned both ways.
-    const double corners[4][2] = {{0, 0}, {2, 1}, {4, 0}, {2, 4}}, area = 6;
-    for (int axis = 0; axis < 3; ++axis) {
-        for (const std::string order : {"0 1 2 3", "3 2 1 0", "2 3 0 1"}) {
-            std::string text = "OFF\n4 1 0\n";
-            for (const auto& [x, y] : corners) {
-                double at[3] = {0.125 * x, 0.125 * x, 0.125 * x};
-                at[(axis + 1) % 3] = x, at[(axis + 2) % 3] = y;
-                for (const double coordinate : at)
-                    text += std::to_string(coordinate) + " ";
-                text += "\n";
-            }
-            const TriangleMesh mesh = read("a.off", text + "4 " + order + "\n");
-            ASSERT_EQ(mesh.triangles.size(), 2u);
-            double sum = 0, signs = 0;
-            for (const auto& [a, b, c] : mesh.triangles) {
-                const Double3 p = to_double(mesh.vertices[a]);
-                const Double3 normal = cross(to_double(mesh.vertices[b]) - p, to_double(mesh.vertices[c]) - p);
-                const double part = axis == 0 ? normal.x : axis == 1 ? normal.y : normal.z;
-                sum += std::abs(part) / 2;
-                signs += part < 0 ? -1 : 1;
-            }
-            EXPECT_DOUBLE_EQ(sum, area) << axis << ", " << order;
-            EXPECT_EQ(std::abs(signs), 2) << "both are turned as the polygon is";
-        }
+    const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    for (const MeshSoup& soup : {parse_mesh("a.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n3 0 1 2\n"),
+                                 parse_mesh("a.obj", vertices + "f 1 2\nf 1 2 3\n")}) {
+        EXPECT_EQ(soup.notes, std::vector<std::string>{"1 faces of fewer than three corners skipped"});
+        EXPECT_EQ(soup.mesh.triangles.size(), 1u);
     }
-    // A comb of many teeth.
-    std::string comb = "OFF\n202 1 0\n0 -1 0\n", face = "202 0";
-    for (int i = 0; i <= 200; ++i) {
-        comb += std::to_string(200 - i) + (i % 2 == 0 ? " 0 0\n" : " 9 0\n");
-        face += " " + std::to_string(i + 1);
-    }
-    double sum = 0;
-    const TriangleMesh teeth = read("a.off", comb + face + "\n");
-    for (const auto& [a, b, c] : teeth.triangles) {
-        const Double3 p = to_double(teeth.vertices[a]);
-        const Double3 normal = cross(to_double(teeth.vertices[b]) - p, to_double(teeth.vertices[c]) - p);
-        EXPECT_GE(normal.z, 0);
-        sum += normal.z / 2;
-    }
-    EXPECT_NEAR(sum, 100 + 900, 1e-6);
-}
-
-TEST(MeshReader, counts_faces_that_are_no_polygons)
-{
-    const TemporaryFolder folder;
-    write_file(folder / "a.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n3 0 1 2\n");
-    const auto soup = read_mesh(folder / "a.off");
-    EXPECT_EQ(soup.skipped_faces, 1u);
-    EXPECT_EQ(soup.mesh.triangles.size(), 1u);
 }
 
 TEST(MeshReader, reads_obj_corners_of_every_form)
@@ -109,6 +66,96 @@ TEST(MeshReader, reads_obj_corners_of_every_form)
          {"f 1 2 3", "f 1/1 2/1 3/1", "f 1//1 2//1 3//1", "f 1/1/1 2/1/1 3/1/1", "f -3 -2 -1", "f 1 \\\n2 3"})
         EXPECT_EQ(read("a.obj", head + face + "\n").triangles, one) << face;
     EXPECT_EQ(read("a.obj", "f 1 2 3\n" + head).triangles, one) << "a face may come before its vertices";
+}
+
+TEST(MeshReader, skips_statements_of_obj_that_it_does_not_know)
+{
+    const std::string faces = "f 1 2 3\n", vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    const MeshSoup soup = parse_mesh("a.obj", vertices + "vc 1 0 0\n" + faces + "vc 0 0 1\n");
+    EXPECT_EQ(soup.mesh, read("b.obj", vertices + faces));
+    ASSERT_EQ(soup.notes.size(), 1u);
+    EXPECT_EQ(soup.notes[0], "2 statements skipped, the first in statement (line 4): 'vc' is not a keyword of OBJ");
+    EXPECT_EQ(read("a.obj", "V 0 0 0\nV 1 0 0\nV 0 1 0\nF 1 2 3\n"), soup.mesh);
+}
+
+TEST(MeshReader, reads_off_with_every_header)
+{
+    const std::string rest = tetrahedron_off.substr(4);
+    for (const std::string header : {"off\n", "OFF", "OFF ", "", "COFF\n", "NCOFF\n", "STCNOFF\n", "nCoFf\n"})
+        EXPECT_EQ(read("a.off", header + rest), read("b.off", tetrahedron_off)) << header;
+    for (const std::string header : {"4OFF\n", "nOFF\n", "XOFF\n", "OFFX\n"})
+        expect_error("a.off", header + rest, {"header: it begins with '"});
+    expect_error("a.off", "off binary\n", {"binary OFF"});
+}
+
+TEST(MeshReader, reads_values_that_share_lines)
+{
+    const std::string off = "OFF\n4 4 6\n0 0 0 1 0 0 0 1 0 0 0 1\n3 0 2 1 3 0 1 3 3 1 2 3 3 0 3 2\n";
+    EXPECT_EQ(read("a.off", off), read("b.off", tetrahedron_off));
+    expect_error("a.off", off.substr(0, off.size() - 3), {"face 3", "the file ends inside it"});
+    std::string ply = stanford_ply("ascii");
+    const auto body = ply.find("end_header\n") + 11;
+    std::replace(ply.begin() + static_cast<std::ptrdiff_t>(body), ply.end(), '\n', ' ');
+    EXPECT_EQ(read("a.ply", ply), read("b.ply", stanford_ply("ascii")));
+    expect_error("a.ply", ply.substr(0, ply.size() - 3), {"face 1", "the file ends inside it"});
+    std::string stl = ascii_stl;
+    std::replace(stl.begin(), stl.end(), '\n', ' ');
+    EXPECT_EQ(read("a.stl", stl), read("b.stl", ascii_stl));
+}
+
+TEST(MeshReader, reads_every_kind_of_line_end)
+{
+    const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 \\\n3\n";
+    for (const auto& [name, text] : std::vector<std::pair<std::string, std::string>>{
+             {"a.obj", obj}, {"a.off", tetrahedron_off}, {"a.stl", ascii_stl}, {"a.ply", stanford_ply("ascii")}})
+        for (const std::string end : {"\r", "\r\n"}) {
+            std::string changed;
+            for (const char c : text)
+                changed += c == '\n' ? end : std::string(1, c);
+            EXPECT_EQ(read(name, changed), read(name, text)) << name;
+        }
+    std::string binary = stanford_ply("binary_little_endian");
+    std::replace(binary.begin(), binary.begin() + static_cast<std::ptrdiff_t>(binary.find("end_header\n") + 11), '\n',
+                 '\r');
+    EXPECT_EQ(read("a.ply", binary), read("b.ply", stanford_ply("ascii")));
+}
+
+TEST(MeshReader, tells_the_format_of_a_name_without_extension_by_its_content)
+{
+    const std::string obj = "# by hand\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    for (const auto& [name, bytes] : std::vector<std::pair<std::string, std::string>>{{"a.obj", obj},
+                                                                                      {"a.off", tetrahedron_off},
+                                                                                      {"b.off", "C" + tetrahedron_off},
+                                                                                      {"a.stl", ascii_stl},
+                                                                                      {"b.stl", binary_stl()},
+                                                                                      {"a.ply", stanford_ply("ascii")}})
+        EXPECT_EQ(read("stdin", bytes), read(name, bytes)) << name;
+    expect_error("stdin", "text\n1 2\n", {"'text' is not a keyword of OBJ"});
+}
+
+TEST(MeshReader, notes_bytes_after_the_end)
+{
+    for (const auto& format : ply_formats) {
+        const MeshSoup soup = parse_mesh("a.ply", stanford_ply(format) + "\n\x1a\n");
+        EXPECT_EQ(soup.mesh, read("b.ply", stanford_ply(format)));
+        EXPECT_EQ(soup.notes, std::vector<std::string>{"data after the last announced element were ignored"});
+    }
+    const MeshSoup soup = parse_mesh("a.stl", binary_stl() + "by hand");
+    EXPECT_EQ(soup.mesh, read("b.stl", binary_stl()));
+    EXPECT_EQ(soup.notes, std::vector<std::string>{"7 bytes after the last facet were ignored"});
+    EXPECT_EQ(read("a.stl", ascii_stl + "\n\n"), read("b.stl", ascii_stl));
+}
+
+TEST(MeshReader, reads_ascii_stl_as_programs_write_it)
+{
+    std::string spaced = ascii_stl;
+    for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{{"endloop", "end loop"},
+                                                                                   {"endfacet", "end facet"},
+                                                                                   {"endsolid", "end solid"},
+                                                                                   {"a name\n", "a\ncolor 1 0 0\n"}})
+        spaced.replace(spaced.find(from), from.size(), to);
+    EXPECT_EQ(read("a.stl", spaced), read("b.stl", ascii_stl));
+    EXPECT_EQ(read("a.stl", "solid facet vertex" + ascii_stl.substr(ascii_stl.find('\n'))), read("b.stl", ascii_stl));
 }
 
 TEST(MeshReader, reads_stanford_ply_in_every_encoding)
@@ -193,4 +240,49 @@ TEST(MeshReader, rounds_decimal_text_only_once)
     // below.
     const auto mesh = read("a.obj", "v 1.00000005960464477539062500001 +1e-60 -2.5E+0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     EXPECT_EQ(mesh.vertices[0], (Float3{0x1.000002p0f, 0, -2.5f}));
+}
+
+TEST(MeshReader, keeps_the_bits_of_coordinates_that_fit_float)
+{
+    for (const auto& format : ply_formats) {
+        const MeshSoup soup = parse_mesh("a.ply", stanford_ply(format));
+        EXPECT_EQ(soup.centre, Double3{});
+        EXPECT_EQ(soup.rounding, 0);
+        EXPECT_EQ(soup.merged_by_rounding, 0u);
+    }
+    // Far away, but each a float: nothing is lost, so nothing is moved.
+    const MeshSoup far = parse_mesh("a.obj", "v 5412350 0 0.5\nv 5412351 0 0.5\nv 5412350 1 0.5\nf 1 2 3\n");
+    EXPECT_EQ(far.centre, Double3{});
+    EXPECT_EQ(far.mesh.vertices[1], (Float3{5412351, 0, 0.5f}));
+    // Ten times as far as the mesh is large: below the limit.
+    const MeshSoup near = parse_mesh("a.obj", "v 10.1 0 0\nv 11.1 0 0\nv 10.1 1 0\nf 1 2 3\n");
+    EXPECT_EQ(near.centre, Double3{});
+    EXPECT_GT(near.rounding, 0);
+    EXPECT_LE(near.rounding, max_rounding);
+}
+
+TEST(MeshReader, subtracts_the_centre_of_coordinates_that_rounding_would_spoil)
+{
+    // A triangle of a metre in UTM coordinates, whose floats are half a metre apart; and a vertex that no face has.
+    const Double3 centre{451231.75, 5412350.65, 320.7};
+    const std::string vertices = "451231.25 5412350.15 320.7\n451232.25 5412350.15 320.7\n451231.25 5412351.15 320.7\n",
+                      off = "OFF\n4 1 0\n" + vertices + "0 0 0\n3 0 1 2\n",
+                      ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty "
+                            "double z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n" +
+                            vertices + "0 0 0\n3 0 1 2\n";
+    for (const auto& [name, text] : std::vector<std::pair<std::string, std::string>>{{"a.off", off}, {"a.ply", ply}}) {
+        const MeshSoup soup = parse_mesh(name, text);
+        EXPECT_NEAR(length(soup.centre - centre), 0, 1e-8);
+        EXPECT_NEAR(length(to_double(soup.mesh.vertices[0]) - Double3{-0.5, -0.5, 0}), 0, 1e-8);
+        EXPECT_NEAR(length(to_double(soup.mesh.vertices[1]) - Double3{0.5, -0.5, 0}), 0, 1e-8);
+        EXPECT_LT(soup.rounding, 1e-7);
+    }
+}
+
+TEST(MeshReader, counts_vertices_that_rounding_merges)
+{
+    const MeshSoup soup =
+        parse_mesh("a.obj", "v 1.000000001 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 0 0\nf 1 3 4\nf 2 3 4\n");
+    EXPECT_EQ(soup.merged_by_rounding, 2u) << "the fifth is at the second's place, but not at the first's";
+    EXPECT_NEAR(soup.rounding, 1e-9, 1e-12);
 }

@@ -43,7 +43,11 @@ TEST(MeshRefusal, names_empty_files_and_unknown_formats)
     expect_error("a.off", "ply\n", {"begins with 'ply'", "extension"});
     expect_error("a.ply", tetrahedron_off, {"does not begin with 'ply'"});
     expect_error("a.obj", tetrahedron_off, {"'OFF' is not a keyword", "line 1"});
+    expect_error("a.obj", "text\nmore text\n", {"'text' is not a keyword", "line 1"});
     expect_error("a.stl", tetrahedron_off, {"neither"});
+    for (const std::string mark : {"\xFF\xFE", "\xFE\xFF"})
+        for (const std::string name : {"a.obj", "a.off", "a.ply", "stdin"})
+            expect_error(name, mark + std::string("v\0 \0", 4), {"UTF-16", "iconv -f UTF-16 -t UTF-8"});
     expect_error("a.off", "OFF BINARY\n", {"binary OFF", "convert"});
 }
 
@@ -71,6 +75,11 @@ TEST(MeshRefusal, names_the_vertex_that_is_no_finite_float)
     }
     expect_error("b.stl", binary_stl(2, NAN), {"facet 0, vertex 0", "not a number"});
     expect_error("a.off", "OFF\n3 1 0\n0 0 0\n0 zero 0\n", {"vertex 1 (line 4)", "'zero' is not a number"});
+    expect_error("a.obj", "v 0,5 0 0\n", {"vertex 1 (line 1)", "'0,5' has a comma", "decimal point"});
+    expect_error("a.off", "OFF\n3 1 0\n0, 0, 0\n", {"vertex 0 (line 3)", "'0,' has a comma"});
+    std::string ply = stanford_ply("ascii");
+    ply.replace(ply.find("0.25"), 4, "0,25");
+    expect_error("a.ply", ply, {"vertex 3", "'0,25' has a comma"});
 }
 
 TEST(MeshRefusal, names_the_face_with_an_index_out_of_range)
@@ -127,16 +136,16 @@ TEST(MeshRefusal, refuses_files_cut_short_and_files_too_long)
     expect_error("a.off", tetrahedron_off.substr(0, 30), {"vertex"});
     expect_error("a.off", tetrahedron_off.substr(0, tetrahedron_off.size() - 8), {"face 3", "ends before"});
     expect_error("a.off", tetrahedron_off + "garbage\n", {"follows the last announced face"});
-    expect_error("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2", {"face 1 (line 4)", "fewer than three"});
+    expect_error("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2", {"lacks triangles"});
     expect_error("a.stl", ascii_stl.substr(0, ascii_stl.size() - 40), {"facet 1"});
     expect_error("a.stl", ascii_stl.substr(0, ascii_stl.size() - 17), {"endsolid"});
     expect_error("b.stl", binary_stl().substr(0, 150), {"the file has 150"});
-    expect_error("b.stl", binary_stl() + "x", {"announces 2 facets"});
+    expect_error("b.stl", binary_stl(1), {"announces 1 facets", "enough for 2"});
+    expect_error("b.stl", binary_stl(0), {"announces 0 facets", "enough for 2"});
     for (const auto& format : ply_formats) {
         const std::string whole = stanford_ply(format);
         expect_error("a.ply", whole.substr(0, whole.size() - 5), {"face 1"});
         expect_error("a.ply", stanford_ply(format, "3"), {}); // a vertex too many shifts the rest
-        expect_error("a.ply", whole + "garbage", {"follow the last announced element"});
     }
 }
 
