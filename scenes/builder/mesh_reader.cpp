@@ -74,10 +74,12 @@ MeshSoup parse(const std::filesystem::path& path, std::string_view bytes, const 
 MeshSoup read_mesh(const std::filesystem::path& path)
 {
     const std::string bytes = read_bytes(path);
-    MeshSoup soup = parse(path, bytes, path.has_parent_path() ? path.parent_path() : ".");
+    const bool has_other_files = lower_case(path.extension().string()) == ".gltf";
+    const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+    MeshSoup soup = parse(path, bytes, has_other_files ? folder : "");
     Hasher hasher;
     hasher.add(std::as_bytes(std::span(bytes)));
-    if (lower_case(path.extension().string()) == ".gltf") add_gltf_buffers(hasher, path, bytes);
+    if (has_other_files) add_gltf_buffers(hasher, path, bytes);
     soup.source_hash = hasher.hash();
     return soup;
 }

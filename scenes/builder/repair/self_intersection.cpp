@@ -80,13 +80,15 @@ private:
     std::vector<Point> points_;
 };
 
-std::string corners_text(const TriangleMesh& mesh, std::uint32_t triangle, int scale_exponent)
+// In the coordinates of the mesh's file.
+std::string corners_text(const Scene& scene, std::uint32_t triangle)
 {
+    const double unit = std::ldexp(1.0, -scene.build.scale_exponent);
+    const int digits = scene.build.centre == Double3{} ? 9 : 15;
     std::string text;
-    for (const std::uint32_t vertex : mesh.triangles[triangle]) {
-        const Float3 v = mesh.vertices[vertex];
-        const auto unscaled = [&](float x) { return std::ldexp(static_cast<double>(x), -scale_exponent); };
-        text += fmt::format(" ({:.9g}, {:.9g}, {:.9g})", unscaled(v.x), unscaled(v.y), unscaled(v.z));
+    for (const std::uint32_t vertex : scene.mesh.triangles[triangle]) {
+        const Double3 v = to_double(scene.mesh.vertices[vertex]) * unit + scene.build.centre;
+        text += fmt::format(" ({:.{}g}, {:.{}g}, {:.{}g})", v.x, digits, v.y, digits, v.z, digits);
     }
     return text;
 }
@@ -130,8 +132,7 @@ std::string describe(const SelfIntersections& found, const Scene& scene)
         fmt::format("{} pairs of triangles intersect elsewhere than in a shared vertex or edge", found.count);
     for (const auto& pair : found.first)
         for (const std::uint32_t triangle : {pair.first, pair.second})
-            text += fmt::format("\n  triangle {}{}", source_triangle(scene, triangle),
-                                corners_text(scene.mesh, triangle, scene.build.scale_exponent));
+            text += fmt::format("\n  triangle {}{}", source_triangle(scene, triangle), corners_text(scene, triangle));
     if (found.first.size() < found.count) text += "\n  ...";
     return text + "\n--repair cuts them along their intersections; or remove these in another program (MeshLab: "
                   "Filters, Cleaning and Repairing; CGAL: autorefine) and try again";

@@ -24,8 +24,8 @@ struct SelfIntersections {
 /// All such pairs, in lexicographic order.
 [[nodiscard]] std::vector<TrianglePair> intersecting_pairs(const TriangleMesh& mesh);
 
-/// Sentences for a person: the count, the pairs with their numbers in the source and their corners in mesh units
-/// (placed coordinates times 2^-scale_exponent), and what to do.
+/// Sentences for a person: the count, the pairs with their numbers in the source and their corners in the
+/// coordinates of the mesh's file, and what to do.
 [[nodiscard]] std::string describe(const SelfIntersections& found, const Scene& scene);
 
 } // namespace tetrace
