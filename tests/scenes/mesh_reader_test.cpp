@@ -140,6 +140,9 @@ TEST(MeshReader, notes_bytes_after_the_end)
         EXPECT_EQ(soup.mesh, read("b.ply", stanford_ply(format)));
         EXPECT_EQ(soup.notes, std::vector<std::string>{"data after the last announced element were ignored"});
     }
+    const MeshSoup off = parse_mesh("a.off", tetrahedron_off + "garbage\n");
+    EXPECT_EQ(off.mesh, read("b.off", tetrahedron_off));
+    EXPECT_EQ(off.notes, std::vector<std::string>{"text after the last announced face was ignored"});
     const MeshSoup soup = parse_mesh("a.stl", binary_stl() + "by hand");
     EXPECT_EQ(soup.mesh, read("b.stl", binary_stl()));
     EXPECT_EQ(soup.notes, std::vector<std::string>{"7 bytes after the last facet were ignored"});
