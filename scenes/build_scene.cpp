@@ -37,6 +37,9 @@ bool can_execute(const fs::path& path)
 
 constexpr const char* builder_name = "tetrace-builder";
 constexpr double min_mesh_only_s = 60;
+constexpr double tetgen_share = 0.25; // of the time limit, for each of its attempts
+constexpr double hang =
+    10; // times its processor time by the clock: the builder waits for something, not for a processor
 constexpr double to_check_and_write_s = 120; // what an interrupted optimiser has reached; a second Ctrl-C ends it
 
 fs::path in_search_path()
@@ -130,7 +133,8 @@ Ending ending_of(const ChildOutcome& outcome, const BuildOptions& options)
     using End = ChildOutcome::End;
     switch (outcome.end) {
     case End::timed_out:
-        return {ErrorKind::invalid_input, fmt::format("the time limit of {:g} s was reached", options.time_limit_s),
+        return {ErrorKind::invalid_input,
+                fmt::format("the limit of {:g} s of processor time was reached", options.time_limit_s),
                 fmt::format("allow more with `--time-limit`, or {}", try_other_switches)};
     case End::interrupted: return {ErrorKind::interrupted, "interrupted", "run it again to build the scene"};
     case End::signalled:
@@ -173,7 +177,7 @@ Error failure(const std::string& doing, const Ending& ending, const Report& repo
 }
 
 std::vector<std::string> arguments_of(const fs::path& mesh, const fs::path& out, const std::string& label,
-                                      const BuildOptions& options)
+                                      const BuildOptions& options, const TetsAttempt& attempt)
 {
     std::vector<std::string> arguments = {
         "--mesh",         mesh.string(),
@@ -181,12 +185,22 @@ std::vector<std::string> arguments_of(const fs::path& mesh, const fs::path& out,
         "--name",         label,
         "--domain",       std::string(name_of(options.domain)),
         "--divisions",    std::to_string(options.divisions),
-        "--switches",     options.switches,
+        "--switches",     attempt.switches,
+        "--order",        std::to_string(attempt.order),
         "--tets",         std::string(name_of(options.tets)),
         "--effort",       std::to_string(options.effort),
+        "--tetgen-for",   fmt::format("{:g}", tetgen_share * options.time_limit_s),
         "--optimise-for", fmt::format("{:g}", options.optimise_s > 0 ? options.optimise_s : options.time_limit_s / 2)};
-    if (options.repair) arguments.emplace_back("--repair");
+    if (options.repair) arguments.insert(arguments.end(), {"--repair", "--weld", fmt::format("{}", attempt.weld)});
     return arguments;
+}
+
+std::string text_of(const TetsAttempt& attempt)
+{
+    std::string text = attempt.switches;
+    if (attempt.order > 0) text += fmt::format(" in order {}", attempt.order);
+    if (attempt.weld > 0) text += fmt::format(" welded at {:.2g}", attempt.weld);
+    return text;
 }
 
 /// A builder that has ended, and what it said.
@@ -205,6 +219,10 @@ struct Run {
         return outcome.end == ChildOutcome::End::exited &&
                (outcome.code == BUILDER_TETGEN_REFUSED || outcome.code == BUILDER_ABSURD_OUTPUT);
     }
+    [[nodiscard]] bool repair_failed() const
+    {
+        return outcome.end == ChildOutcome::End::exited && outcome.code == BUILDER_SELF_INTERSECTION;
+    }
     /// Whether a scene of only the mesh is possible: nothing was found wrong with the mesh.
     [[nodiscard]] bool only_tets_failed() const
     {
@@ -218,19 +236,22 @@ Run run_builder(const fs::path& builder, const std::vector<std::string>& argumen
 {
     Run run;
     // A scene's file is shorter than what it takes in memory.
-    ChildLimits limits = {options.time_limit_s, options.memory_limit_bytes,
-                          options.keep_unfinished ? to_check_and_write_s : 0, options.memory_limit_bytes};
+    ChildLimits limits = {.time_s = hang * options.time_limit_s,
+                          .processor_s = options.time_limit_s,
+                          .memory_bytes = options.memory_limit_bytes,
+                          .finish_s = options.keep_unfinished ? to_check_and_write_s : 0,
+                          .file_bytes = options.memory_limit_bytes};
     // AddressSanitizer reserves terabytes of address space, in the builder of the same build too.
     if (address_space_is_shadowed) limits.memory_bytes = 0;
     run.outcome = run_child(
         builder, arguments, limits, [&](const std::string& line) { run.report.take(line); },
-        [&](double elapsed_s) {
+        [&](double processor_s) {
             if (!progress) return;
             // TetGen does not report its progress.
-            const bool knows = run.report.fraction >= 0 || options.time_limit_s <= elapsed_s;
-            const double max_minutes = std::ceil((options.time_limit_s - elapsed_s) / 60);
+            const bool knows = run.report.fraction >= 0 || options.time_limit_s <= processor_s;
+            const double max_minutes = std::ceil((options.time_limit_s - processor_s) / 60);
             progress(fmt::format("building {}: {}", label, run.report.stage), run.report.fraction,
-                     knows ? run.report.detail : fmt::format("at most {:.0f} min more", max_minutes));
+                     knows ? run.report.detail : fmt::format("at most {:.0f} min of processor time more", max_minutes));
         });
     return run;
 }
@@ -251,27 +272,42 @@ BuildEnd build_scene(const fs::path& mesh, const fs::path& out, const std::strin
 {
     const fs::path builder = find_builder();
     if (builder.empty()) fail_without_builder(label);
-    BuildOptions tried = options;
-    Run run = run_builder(builder, arguments_of(mesh, out, label, tried), label, tried, progress);
-    std::string failed;
-    for (const std::string& switches : fallback_switches(options)) {
-        if (!run.tetgen_failed()) break;
-        failed += tried.switches + ", then ";
-        notes.push_back(fmt::format("TetGen failed with switches {} ({}); trying {} instead", tried.switches,
-                                    ending_of(run.outcome, tried).what, switches));
-        tried.switches = switches;
-        tried.time_limit_s = std::max(tried.time_limit_s - run.outcome.wall_s, options.time_limit_s / 10);
-        run = run_builder(builder, arguments_of(mesh, out, label, tried), label, tried, progress);
+    TetsAttempt attempt{options.switches};
+    double spent_s = 0;
+    const auto run_attempt = [&] {
+        BuildOptions limited = options;
+        limited.time_limit_s -= spent_s;
+        Run run = run_builder(builder, arguments_of(mesh, out, label, options, attempt), label, limited, progress);
+        spent_s += run.outcome.processor_s;
+        return run;
+    };
+    Run run = run_attempt();
+    std::vector<std::string> failed{text_of(attempt)};
+    for (const TetsAttempt& next : fallback_attempts(options)) {
+        if (!run.tetgen_failed() && !(attempt.weld > 0 && run.repair_failed())) break;
+        if (spent_s > 0.95 * options.time_limit_s) break;
+        if (failed.size() == 1)
+            notes.push_back(fmt::format("TetGen failed with switches {} ({}); trying others", failed.back(),
+                                        ending_of(run.outcome, options).what));
+        attempt = next;
+        failed.push_back(text_of(attempt));
+        run = run_attempt();
     }
+    if (run.is_good() && failed.size() > 1)
+        notes.push_back(
+            fmt::format("TetGen made the tets with switches {}, at attempt {}", failed.back(), failed.size()));
     notes.insert(notes.end(), run.report.notes.begin(), run.report.notes.end());
     if (run.is_good()) return {run.outcome.interrupted, std::nullopt};
-    const Error error = failure(
-        fmt::format("building scene {} from {} with switches {}", label, mesh.string(), failed + tried.switches),
-        ending_of(run.outcome, tried), run.report, run.outcome.wall_s);
+    const Error error =
+        failure(fmt::format("building scene {} from {} with switches {}", label, mesh.string(),
+                            failed.size() == 1 ? failed.front()
+                                               : fmt::format("{} and {} other ways, the last {}", failed.front(),
+                                                             failed.size() - 1, failed.back())),
+                ending_of(run.outcome, options), run.report, run.outcome.wall_s);
     if (!options.mesh_will_do || !run.only_tets_failed()) throw error;
     BuildOptions mesh_only = options;
     mesh_only.time_limit_s = std::max(options.time_limit_s, min_mesh_only_s);
-    std::vector<std::string> arguments = arguments_of(mesh, out, label, mesh_only);
+    std::vector<std::string> arguments = arguments_of(mesh, out, label, mesh_only, {options.switches});
     arguments.emplace_back("--mesh-only");
     const Run second = run_builder(builder, arguments, label, mesh_only, progress);
     if (second.outcome.end == ChildOutcome::End::interrupted)
@@ -280,12 +316,23 @@ BuildEnd build_scene(const fs::path& mesh, const fs::path& out, const std::strin
     return {second.outcome.interrupted, error};
 }
 
-std::vector<std::string> fallback_switches(const BuildOptions& options)
+std::vector<TetsAttempt> fallback_attempts(const BuildOptions& options)
 {
-    std::vector<std::string> all{default_build(TetsKind::rays).switches, default_build(TetsKind::cdt).switches,
-                                 default_build(TetsKind::cdt).switches + "MT1e-13", "p", "pMT1e-13"};
     if (options.switches != default_build(options.tets).switches) return {};
-    all.erase(all.begin(), std::ranges::find(all, options.switches) + 1);
+    constexpr std::uint32_t first_orders = 8, orders_of_welds = 3, all_orders = 32;
+    const std::string careful = options.switches + "0/2/2", quality = default_build(TetsKind::cdt).switches;
+    std::vector<TetsAttempt> all;
+    for (std::uint32_t order = 0; order < first_orders; ++order)
+        all.push_back({careful, order});
+    if (options.switches != quality) all.push_back({quality});
+    all.push_back({quality + "MT1e-13"});
+    for (const double weld : {0x1p-20, 0x1p-18, 0x1p-16})
+        for (std::uint32_t order = 0; options.repair && order < orders_of_welds; ++order)
+            all.push_back({order == 0 ? options.switches : careful, order, weld});
+    for (std::uint32_t order = first_orders; order < all_orders; ++order)
+        all.push_back({careful, order});
+    all.push_back({"p"});
+    all.push_back({"pMT1e-13"});
     return all;
 }
 

@@ -15,10 +15,21 @@ namespace tetrace {
 /// else in PATH; empty if none can be executed.
 [[nodiscard]] std::filesystem::path find_builder();
 
-/// The switches that a build tries, in this order, if TetGen fails with the options' own; none if the user chose those.
-/// TetGen crashes on some meshes with pY and not with pq5Y, and refuses some with pq5Y and not with facets that stay
-/// apart (M) and a finer tolerance (T), or without Y and q.
-[[nodiscard]] std::vector<std::string> fallback_switches(const BuildOptions& options);
+/// A way to make tets.
+struct TetsAttempt {
+    std::string switches;
+    std::uint32_t order = 0; ///< in which TetGen gets the mesh
+    double weld = 0;         ///< tolerance of the repair; 0: only where it needs one
+
+    friend bool operator==(const TetsAttempt&, const TetsAttempt&) = default;
+};
+
+/// What a build tries, in this order, if TetGen fails with the options' own switches; none if the user chose those.
+/// TetGen crashes on some meshes in one order of vertices and not in another, most often where it removes Steiner
+/// points (hence Y0/2/2); on some with pY and not with pq5Y; and refuses some with pq5Y and not with facets that stay
+/// apart (M) and a finer tolerance (T), or without Y and q. Where layers are too near to each other for it, a repair
+/// makes one of them. Figures: results/repair.md.
+[[nodiscard]] std::vector<TetsAttempt> fallback_attempts(const BuildOptions& options);
 
 /// A build that left a scene.
 struct BuildEnd {
@@ -27,7 +38,7 @@ struct BuildEnd {
 };
 
 /// Runs tetrace-builder on a mesh file within the options' limits; it writes `out`. If TetGen fails, runs it again with
-/// each of fallback_switches() in what is left of the time, or a tenth of it, until one of them will do.
+/// each of fallback_attempts() in what is left of the time, until one of them will do.
 /// If TetGen fails with all of them, crashes, or reaches the limit of time or memory, and the mesh will do, the builder
 /// is run once more for only the mesh, within the same limits, but at least a minute. notes: the builder's remarks are
 /// appended. progress: called with the stage about ten times per second. Throws Error; its text says how the builder

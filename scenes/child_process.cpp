@@ -169,6 +169,13 @@ public:
         const int result = ::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT);
         return result == 0 ? info.si_pid == 0 : errno == EINTR;
     }
+    [[nodiscard]] double processor_s() const
+    {
+        clockid_t clock{};
+        timespec time{};
+        if (::clock_getcpuclockid(pid_, &clock) != 0 || ::clock_gettime(clock, &time) != 0) return 0;
+        return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) * 1e-9;
+    }
     void signal_group(int signal) const { ::kill(-pid_, signal); }
     /// Kills what is left of the group, while the unreaped child still keeps its number from being used again.
     [[nodiscard]] int end()
@@ -309,8 +316,9 @@ public:
         }
         const bool may_finish = limits.finish_s > 0 && count == 1 && elapsed_s <= *interrupted_s_ + limits.finish_s;
         if (reason_ == End::exited && count > 0 && !may_finish) ask(child, End::interrupted, elapsed_s);
-        if (reason_ == End::exited && limits.time_s > 0 && elapsed_s > limits.time_s)
-            ask(child, End::timed_out, elapsed_s);
+        const bool is_late = limits.time_s > 0 && elapsed_s > limits.time_s;
+        const bool is_spent = limits.processor_s > 0 && child.processor_s() > limits.processor_s;
+        if (reason_ == End::exited && (is_late || is_spent)) ask(child, End::timed_out, elapsed_s);
         if (reason_ != End::exited && elapsed_s > asked_s_ + grace_s) child.signal_group(SIGKILL);
     }
     [[nodiscard]] End reason() const { return reason_; }
@@ -333,7 +341,7 @@ private:
 
 ChildOutcome run_child(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                        const ChildLimits& limits, const std::function<void(const std::string&)>& on_error_line,
-                       const std::function<void(double elapsed_s)>& on_tick)
+                       const std::function<void(double processor_s)>& on_tick)
 {
     const InterruptGuard guard;
     const Stopwatch watch;
@@ -347,12 +355,14 @@ ChildOutcome run_child(const std::filesystem::path& program, const std::vector<s
         // Without streams, poll() does not wake when the child ends: look more often.
         streams = output.take(child, streams ? tick_ms : tick_ms / 20);
         const double elapsed_s = watch.seconds();
+        outcome.processor_s = child.processor_s();
         terminator.check(child, limits, elapsed_s);
         if (on_tick && elapsed_s >= next_tick_s) {
-            on_tick(elapsed_s);
+            on_tick(outcome.processor_s);
             next_tick_s = elapsed_s + tick_ms / 1000.0;
         }
     }
+    outcome.processor_s = child.processor_s();
     const int status = child.end();
     output.take(child, 0);
     output.finish();

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cctype>
 #include <chrono>
+#include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <functional>
@@ -109,8 +110,9 @@ std::string MeshSceneLoader::mismatch(const Scene& scene) const
     if (scene.build.source_hash != mesh_hash_) return "it was made from another mesh";
     if (scene.domain.kind != asked.domain || scene.domain.divisions != asked.divisions)
         return "its domain is another one";
-    const std::vector<std::string> others = fallback_switches(asked);
-    if (scene.build.switches != asked.switches && std::ranges::find(others, scene.build.switches) == others.end())
+    const auto others = fallback_attempts(asked);
+    if (scene.build.switches != asked.switches &&
+        std::ranges::find(others, scene.build.switches, &TetsAttempt::switches) == others.end())
         return fmt::format("it was made with the switches {}, not {}", scene.build.switches, asked.switches);
     if (scene.build.repair.asked != asked.repair)
         return asked.repair ? "its mesh was not to be repaired" : "its mesh was to be repaired";
@@ -149,6 +151,9 @@ bool MeshSceneLoader::read_cached()
         loaded_.messages.push_back(fmt::format(
             "{}: repaired when it was built: {} pairs of triangles crossed, and {} triangles were cut into {}", label_,
             repair.crossing_pairs, repair.cut_triangles, repair.pieces));
+    if (difference.empty() && repair.tolerance > 0)
+        loaded_.messages.push_back(fmt::format("{}: the repair moved faces by up to {:.1e} to make one of near layers",
+                                               label_, std::ldexp(repair.moved, -info.scale_exponent)));
     if (difference.empty() && info.switches != request_.build.switches)
         loaded_.messages.push_back(fmt::format("{}: made with TetGen's switches {}, since {} failed", label_,
                                                info.switches, request_.build.switches));

@@ -129,6 +129,8 @@ void put_repair(InformationWriter& out, const RepairInfo& info)
     for (const std::uint64_t count : {info.crossing_pairs, info.cut_triangles, info.pieces, info.dropped})
         out.put(count);
     out.put(info.passes);
+    out.put(info.tolerance);
+    out.put(info.moved);
 }
 
 bool get_repair(InformationReader& in, RepairInfo& info)
@@ -139,6 +141,8 @@ bool get_repair(InformationReader& in, RepairInfo& info)
     for (std::uint64_t* count : {&info.crossing_pairs, &info.cut_triangles, &info.pieces, &info.dropped})
         in.get(*count);
     in.get(info.passes);
+    in.get(info.tolerance);
+    in.get(info.moved);
     return asked <= 1;
 }
 
@@ -154,6 +158,7 @@ std::vector<char> pack_information(const Scene& scene)
     out.put(build.source);
     out.put(build.source_hash);
     out.put(build.switches);
+    out.put(build.order);
     out.put(build.tool);
     out.put(build.build_s);
     for (const double value : {build.centre.x, build.centre.y, build.centre.z, build.rounding})
@@ -181,6 +186,7 @@ bool unpack_information(std::span<const char> bytes, Scene& scene)
     in.get(build.source);
     in.get(build.source_hash);
     in.get(build.switches);
+    in.get(build.order);
     in.get(build.tool);
     in.get(build.build_s);
     for (double* value : {&build.centre.x, &build.centre.y, &build.centre.z, &build.rounding})

@@ -158,7 +158,9 @@ nlohmann::json repair_json(const RepairInfo& repair)
             {"cut_triangles", repair.cut_triangles},
             {"pieces", repair.pieces},
             {"dropped", repair.dropped},
-            {"passes", repair.passes}};
+            {"passes", repair.passes},
+            {"tolerance", repair.tolerance},
+            {"moved", repair.moved}};
 }
 
 } // namespace
@@ -180,6 +182,7 @@ nlohmann::json scene_json(const SceneWork& scene, const Options& options)
                              {"domain", name_of(loaded.scene.domain.kind)},
                              {"divisions", loaded.scene.domain.divisions},
                              {"switches", build.switches},
+                             {"order", build.order},
                              {"tets_kind", name_of(build.optimised.tets)},
                              {"tool", build.tool},
                              {"build_s", build.build_s},

@@ -93,7 +93,9 @@ std::vector<OptionRow> scene_options()
              "and atrium; cubes, banana and atrium if the first two are missing.",
          building, true, append_scenes},
         {"Scenes", "--repair", "",
-         "If triangles of a mesh cross, overlap or touch, cut them along their exact intersections. Without it, "
+         "If triangles of a mesh cross, overlap or touch, cut them along their exact intersections; where that has no "
+         "end, "
+         "or TetGen fails, make one of near layers, and say by how much faces moved. Without it, "
          "such a mesh is refused. face_id in results still names the file's triangles.",
          building, false, set(&Options::repair)},
         {"Scenes", "--domain", "KIND",
@@ -127,10 +129,12 @@ std::vector<OptionRow> scene_options()
              ".",
          building, false, set_count("--resolution", &Options::resolution, 2, 128)},
         {"Scenes", "--time-limit", "TIME",
-         "End the scene builder after this time: seconds, or a number followed by s, m or h. Default: 10m.", building,
-         false, set_seconds("--time-limit", &Options::time_limit_s)},
+         "End the scene builder when it has used this much processor time: seconds, or a number followed by s, m or h. "
+         "Default: 10m.",
+         building, false, set_seconds("--time-limit", &Options::time_limit_s)},
         {"Scenes", "--optimise-time", "TIME",
-         "Stop the optimiser of --tets rays after this time, as above, and use the tets reached so far. They depend "
+         "Stop the optimiser of --tets rays after this processor time, as above, and use the tets reached so far. They "
+         "depend "
          "on the machine: the result says 'out of time', and the scene is kept in a separate file, which --scene "
          "accepts. Default: half of --time-limit.",
          building, false, set_seconds("--optimise-time", &Options::optimise_s)},

@@ -64,6 +64,8 @@ struct RepairInfo {
     std::uint64_t pieces = 0;         ///< triangles of the scene that are parts of these
     std::uint64_t dropped = 0;        ///< parts that lay on another, or that rounding left without area
     std::uint32_t passes = 0;         ///< rounding makes new crossings, so that pieces may be cut again
+    double tolerance = 0;             ///< domain units; what was nearer was made one; 0: nothing was moved
+    double moved = 0;                 ///< domain units; no vertex and no point of a face went farther
 
     friend bool operator==(const RepairInfo&, const RepairInfo&) = default;
 };
@@ -73,6 +75,7 @@ struct BuildInfo {
     std::string source;            ///< the mesh file's name, or the generator
     std::uint64_t source_hash = 0; ///< XXH3 of the mesh file's bytes
     std::string switches;          ///< TetGen's switches as passed; empty if no TetGen ran
+    std::uint32_t order = 0;       ///< in which TetGen got vertices and triangles; 0: as they are
     std::string tool;              ///< program and version that made the tets
     double build_s = 0;            ///< seconds from mesh file to checked tets
     Double3 centre{};       ///< what was subtracted from the file's coordinates before they were rounded to float

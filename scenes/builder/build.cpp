@@ -174,8 +174,8 @@ void repair_or_refuse(Scene& scene, const BuilderOptions& options, const Builder
         return require_no_self_intersection(scene);
     }
     talk.stage("repairing");
-    repair(scene, talk.stage);
-    talk.note(repair_text(scene.build.repair));
+    repair(scene, options.weld, talk.stage);
+    talk.note(repair_text(scene.build));
 }
 
 // Most meshes need no repair and lose no triangle: then there is nothing to keep.
@@ -310,6 +310,7 @@ PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& ta
     scene.name = options.name.empty() ? options.mesh.stem().string() : options.name;
     scene.build.source = options.mesh.filename().string();
     scene.build.switches = options.switches;
+    scene.build.order = options.order;
     scene.build.tool = builder_tool();
 
     talk.stage("reading " + scene.build.source);

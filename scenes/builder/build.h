@@ -35,10 +35,13 @@ struct BuilderOptions {
     DomainKind domain = DomainKind::tight;
     std::uint32_t divisions = 8;
     std::string switches = "pq5Y";
-    bool repair = false; ///< cut triangles that cross
+    std::uint32_t order = 0; ///< in which TetGen gets the mesh (run_tetgen)
+    bool repair = false;     ///< cut triangles that cross
+    double weld = 0;         ///< repair: with at least this tolerance, domain units; 0: only where it must be
     TetsKind tets = TetsKind::cdt;
     int effort = default_effort; ///< of the optimiser, for TetsKind::rays
     bool mesh_only = false;      ///< no tets: the mesh is read, cleaned and placed in its domain
+    double tetgen_for_s = 0;     ///< TetGen has failed if it takes more processor time; 0: no limit
     double optimise_for_s = 300; ///< the optimiser stops then, with what it has reached; 0: no limit
 };
 

@@ -8,12 +8,16 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <sys/time.h>
+#include <unistd.h>
 
 namespace {
 
@@ -106,8 +110,20 @@ std::optional<int> parse(int argc, char** argv, BuilderOptions& options)
         ->check(CLI::Range(1, 64).description(""))
         ->type_name("N");
     app.add_option("--switches", options.switches, "TetGen's switches; default: pq5Y")->type_name("SWITCHES");
+    app.add_option("--order", options.order,
+                   "N: give TetGen vertices and triangles in the Nth order at random; default: 0, as they are")
+        ->type_name("N");
     app.add_flag("--repair", options.repair,
                  "cut triangles that cross along their intersections, in place of refusing");
+    app.add_option("--weld", options.weld,
+                   "with --repair: make one of what is nearer than this, in units of the domain, whose longest side "
+                   "has 1 to 2; default: 0, only where an exact repair does not end")
+        ->check(CLI::Range(0.0, weld_tolerances.back()).description(""))
+        ->type_name("T");
+    app.add_option("--tetgen-for", options.tetgen_for_s,
+                   "TetGen has failed if it takes more than this many seconds of processor time; default: 0, no limit")
+        ->check(CLI::Range(0.0, 1e6).description(""))
+        ->type_name("S");
     app.add_flag("--mesh-only", options.mesh_only,
                  "write a scene without tets, which BVHs can be built of; TetGen does not run");
     std::string tets(name_of(options.tets));
@@ -156,6 +172,24 @@ void write_mesh_only(const std::filesystem::path& out, PreparedScene& prepared)
     write_scene(out, prepared.scene);
 }
 
+// Ends the program when it has used this many seconds of processor time from now on, with words that a handler may
+// write; 0: no longer.
+void begin_limit(double seconds)
+{
+    std::signal(SIGPROF, [](int) {
+        constexpr std::string_view text =
+            "error: TetGen did not end within its share of the limit of time; allow more with "
+            "tetrace's --time-limit\n";
+        [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
+        ::_exit(BUILDER_TETGEN_REFUSED);
+    });
+    const double whole = std::floor(seconds);
+    itimerval timer{};
+    timer.it_value.tv_sec = static_cast<time_t>(whole);
+    timer.it_value.tv_usec = static_cast<suseconds_t>((seconds - whole) * 1e6);
+    ::setitimer(ITIMER_PROF, &timer, nullptr);
+}
+
 } // namespace
 
 int main(int argc, char** argv)
@@ -172,8 +206,11 @@ int main(int argc, char** argv)
     if (options.mesh_only) return guarded([&] { write_mesh_only(options.out, prepared); });
 
     say("stage", "TetGen " + options.switches);
+    begin_limit(options.tetgen_for_s);
     std::set_terminate(explain_tetgen_failure); // and the call is not inside a handler: see run_tetgen
-    const TetgenOutput output = run_tetgen(prepared.scene.mesh, prepared.surface, prepared.points, options.switches);
+    const TetgenOutput output =
+        run_tetgen(prepared.scene.mesh, prepared.surface, prepared.points, options.switches, options.order);
+    begin_limit(0);
     finish_when_interrupted(prepared);
     return guarded([&] {
         const Scene scene = finish_scene(std::move(prepared), output, talk());

@@ -12,6 +12,8 @@
 #include <fmt/format.h>
 #include <memory>
 #include <new>
+#include <numeric>
+#include <random>
 
 namespace tetrace {
 namespace {
@@ -54,6 +56,61 @@ void fill_points(tetgenio& input, const std::vector<Float3>& points)
     input.pointlist = new double[3 * points.size()];
     int next = 0;
     add_points(input, points, next);
+}
+
+// Of each number below `count`, its place; a shuffle that is the same on every machine.
+std::vector<std::uint32_t> places_of(std::size_t count, std::uint32_t order)
+{
+    std::vector<std::uint32_t> places(count);
+    std::iota(places.begin(), places.end(), 0u);
+    std::mt19937_64 random(order);
+    for (std::size_t i = count; order > 0 && i > 1; --i)
+        std::swap(places[i - 1], places[random() % i]);
+    return places;
+}
+
+// A mesh whose vertices and triangles are in another order.
+TriangleMesh shuffled(const TriangleMesh& mesh, const std::vector<std::uint32_t>& vertices,
+                      const std::vector<std::uint32_t>& triangles)
+{
+    TriangleMesh result = mesh;
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+        result.vertices[vertices[i]] = mesh.vertices[i];
+    for (std::size_t i = 0; i < triangles.size(); ++i)
+        for (std::size_t corner = 0; corner < 3; ++corner)
+            result.triangles[triangles[i]][corner] = vertices[mesh.triangles[i][corner]];
+    return result;
+}
+
+template <class Indices>
+void rename(Indices& indices, const std::vector<std::uint32_t>& names)
+{
+    for (std::int32_t& index : indices)
+        if (static_cast<std::size_t>(index) < names.size())
+            index = static_cast<std::int32_t>(names[static_cast<std::size_t>(index)]);
+}
+
+// Back into the order that shuffled() changed.
+void restore_order(TetgenOutput& output, const std::vector<std::uint32_t>& vertices,
+                   const std::vector<std::uint32_t>& triangles)
+{
+    const auto inverse = [](const std::vector<std::uint32_t>& places) {
+        std::vector<std::uint32_t> names(places.size());
+        for (std::uint32_t i = 0; i < places.size(); ++i)
+            names[places[i]] = i;
+        return names;
+    };
+    const std::vector<Double3> points = output.points;
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+        output.points[i] = points[vertices[i]];
+    const auto names = inverse(vertices), numbers = inverse(triangles);
+    for (auto& tet : output.tets)
+        rename(tet, names);
+    for (auto& face : output.surface_faces) {
+        rename(face.corners, names);
+        if (face.triangle >= 0)
+            face.triangle = static_cast<std::int32_t>(numbers[static_cast<std::size_t>(face.triangle)]);
+    }
 }
 
 void fill(tetgenio& input, const TriangleMesh& mesh, const TriangleMesh& surface)
@@ -167,19 +224,21 @@ void require_switches(const std::string& switches)
 }
 
 TetgenOutput run_tetgen(const TriangleMesh& mesh, const TriangleMesh& surface, const std::vector<Float3>& points,
-                        const std::string& switches)
+                        const std::string& switches, std::uint32_t order)
 {
     // Not on the stack: if TetGen throws, nothing may be unwound.
     auto* const input = new tetgenio;
     auto* const output = new tetgenio;
     auto* const later = new tetgenio;
-    fill(*input, mesh, surface);
+    const auto vertices = places_of(mesh.vertices.size(), order), triangles = places_of(mesh.triangles.size(), order);
+    fill(*input, shuffled(mesh, vertices, triangles), surface);
     fill_points(*later, points);
     std::string text = switches + our_switches + (points.empty() ? "" : "i");
     tetgenbehavior behavior;
     behavior.parse_commandline(text.data());
     tetrahedralize(&behavior, input, output, later);
     TetgenOutput result = take(*output, static_cast<std::size_t>(input->numberofpoints));
+    restore_order(result, vertices, triangles);
     delete input;
     delete later;
     delete output;

@@ -30,11 +30,13 @@ struct TetgenOutput {
 void require_switches(const std::string& switches);
 
 /// Tetrahedralizes the inside of `surface` (the domain's) with every triangle of `mesh` as a constraint, and `points`
-/// of its inside as more vertices.
+/// of its inside as more vertices. order: 0 gives TetGen vertices and triangles as they are, every other number in an
+/// order of its own: whether TetGen fails depends on it.
 /// TetGen throws an int where it fails, and libtet cannot be unwound: no caller may catch it or run clean-up. So call
 /// it from main with std::set_terminate(explain_tetgen_failure), or where failure is not expected.
 [[nodiscard]] TetgenOutput run_tetgen(const TriangleMesh& mesh, const TriangleMesh& surface,
-                                      const std::vector<Float3>& points, const std::string& switches);
+                                      const std::vector<Float3>& points, const std::string& switches,
+                                      std::uint32_t order = 0);
 
 /// A terminate handler: prints one `error:` line about TetGen's int (or std::bad_alloc) and ends the process with
 /// BUILDER_TETGEN_REFUSED or BUILDER_OUT_OF_MEMORY; aborts for anything else.

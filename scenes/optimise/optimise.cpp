@@ -99,6 +99,7 @@ private:
     Effort effort_;
     const Progress& progress_;
     Stopwatch watch_;
+    ProcessorStopwatch processor_;
     const TetMesh& given_;
     MeshArrays mesh_;
     double per_area_; ///< of a sum of areas, to the number of faces that a uniform line crosses
@@ -118,7 +119,8 @@ bool Optimiser::go_on(double share_of_region)
 {
     const std::lock_guard lock(looking_);
     if (ends_early()) return false;
-    if (limits_.time_limit_s > 0 && watch_.seconds() > limits_.time_limit_s) report_.end = OptimiserEnd::out_of_time;
+    if (limits_.time_limit_s > 0 && processor_.seconds() > limits_.time_limit_s)
+        report_.end = OptimiserEnd::out_of_time;
     if (limits_.stop != nullptr && limits_.stop->load()) report_.end = OptimiserEnd::interrupted;
     const double share = (static_cast<double>(regions_done_) + share_of_region) / static_cast<double>(tallies_.size());
     const bool is_first = mark_ == round_began_;
@@ -131,7 +133,7 @@ void Optimiser::tell(double share_of_round) const
     if (!progress_) return;
     double left_s =
         forecast_.left_s(watch_.seconds(), share_of_round, effort_.share * cost_, effort_.max_rounds - report_.rounds);
-    if (limits_.time_limit_s > 0) left_s = std::min(left_s, std::max(0.0, limits_.time_limit_s - watch_.seconds()));
+    if (limits_.time_limit_s > 0) left_s = std::min(left_s, std::max(0.0, limits_.time_limit_s - processor_.seconds()));
     progress_("optimising", watch_.seconds() / (watch_.seconds() + left_s),
               fmt::format("round {}: a line crosses {:.2f} faces, {:.2f} before", report_.rounds, cost_,
                           report_.cost_before));

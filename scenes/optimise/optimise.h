@@ -32,7 +32,7 @@ inline constexpr int max_effort = 3, default_effort = 2;
 
 struct OptimiserLimits {
     int effort = default_effort;
-    double time_limit_s = 0;                 ///< it ends after this many seconds; 0: no limit
+    double time_limit_s = 0;                 ///< it ends after this much processor time of the process; 0: no limit
     const std::atomic<bool>* stop = nullptr; ///< it ends after the current operation where this becomes true
     int threads = 0;                         ///< 0: as many as OpenMP has. The result does not depend on it
     std::size_t tets_per_region = 12288; ///< at most (docs/spec/rays-tets.md, In parallel); the result depends on it

@@ -232,6 +232,30 @@ TEST_F(BuilderProgram, repairs_crossing_triangles_where_it_is_asked_to)
     EXPECT_TRUE(read_scene(folder_ / "out.tet").origins.empty());
 }
 
+TEST_F(BuilderProgram, gives_tetgen_the_mesh_in_any_order)
+{
+    const auto mesh = write("ball.off", to_off(sphere(4)));
+    const auto scene_in = [&](const std::string& order) {
+        const auto ended = run_on(mesh, "--order " + order);
+        EXPECT_EQ(ended.code, BUILDER_GOOD) << ended.errors;
+        Scene scene = read_scene(folder_ / "out.tet");
+        expect_sound(scene);
+        return scene;
+    };
+    const Scene first = scene_in("0"), other = scene_in("3"), again = scene_in("3");
+    EXPECT_EQ(other.mesh, first.mesh) << "faces keep their numbers";
+    EXPECT_NE(other.tets, first.tets);
+    EXPECT_EQ(other.tets, again.tets);
+    EXPECT_EQ(other.build.order, 3u);
+}
+
+TEST_F(BuilderProgram, ends_tetgen_at_its_limit_of_processor_time)
+{
+    const auto ended = run_on(write("ball.off", to_off(sphere(6))), "--tetgen-for 0.001");
+    EXPECT_EQ(ended.code, BUILDER_TETGEN_REFUSED);
+    EXPECT_TRUE(contains(ended.errors, "error: TetGen did not end within its share of the limit of time"));
+}
+
 TEST_F(BuilderProgram, numbers_triangles_as_the_file_does_where_some_are_dropped)
 {
     TriangleMesh mesh = tetrahedron();

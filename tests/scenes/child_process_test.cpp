@@ -183,6 +183,16 @@ TEST(ChildProcess, ends_a_child_at_its_time_limit)
     EXPECT_GE(outcome.wall_s, 0.3);
 }
 
+TEST(ChildProcess, ends_a_child_at_its_limit_of_processor_time)
+{
+    const ChildOutcome busy = shell("while :; do :; done", {.processor_s = 0.1});
+    EXPECT_EQ(busy.end, End::timed_out);
+    EXPECT_GE(busy.processor_s, 0.1);
+    const ChildOutcome asleep = shell("exec sleep 0.5", {.processor_s = 0.1});
+    EXPECT_EQ(asleep.end, End::exited) << "waiting takes none";
+    EXPECT_LT(asleep.processor_s, 0.1);
+}
+
 TEST(ChildProcess, kills_a_child_that_ignores_being_asked)
 {
     const ChildOutcome outcome = shell("trap '' TERM; sleep 60; sleep 60", {.time_s = 0.3, .memory_bytes = 0});
@@ -237,7 +247,7 @@ TEST(ChildProcess, lets_a_child_finish_after_one_interrupt_where_it_may)
     }, ours{};
     ours.sa_handler = SIG_DFL;
     ::sigaction(SIGINT, &ours, &before);
-    const ChildLimits patient = {0, 0, 60};
+    const ChildLimits patient = {.finish_s = 60};
     const std::string loop = "echo ready >&2; while :; do sleep 0.02; done";
     const ChildOutcome finished = shell_interrupted_by(SIGINT, "trap 'echo end; exit 0' INT; " + loop, 1, patient);
     EXPECT_EQ(finished.end, End::exited);
@@ -247,7 +257,7 @@ TEST(ChildProcess, lets_a_child_finish_after_one_interrupt_where_it_may)
     EXPECT_EQ(ended.end, End::interrupted) << "it has nothing to finish";
     const ChildOutcome twice = shell_interrupted_by(SIGINT, "trap '' INT; " + loop, 2, patient);
     EXPECT_EQ(twice.end, End::interrupted) << "the second ends it";
-    const ChildOutcome late = shell_interrupted_by(SIGINT, "trap '' INT; " + loop, 1, {0, 0, 0.3});
+    const ChildOutcome late = shell_interrupted_by(SIGINT, "trap '' INT; " + loop, 1, {.finish_s = 0.3});
     EXPECT_EQ(late.end, End::interrupted) << "its time is over";
     EXPECT_FALSE(run_child("/bin/true", {}, patient).interrupted);
     ::sigaction(SIGINT, &before, nullptr);

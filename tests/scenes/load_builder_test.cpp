@@ -3,6 +3,7 @@
 #include "tests/scenes/load_fixture.h"
 
 #include <csignal>
+#include <fmt/format.h>
 #include <sys/resource.h>
 #include <thread>
 #include <unistd.h>
@@ -40,8 +41,8 @@ TEST_F(Load, passes_all_options_to_the_builder)
     (void)error_of([&] { (void)load(); });
     const std::string run = read_text(folder / "runs");
     EXPECT_TRUE(contains(run, "--mesh " + mesh.string() + " --out "));
-    EXPECT_TRUE(contains(
-        run, " --name thing --domain wide --divisions 5 --switches pq3Y --tets cdt --effort 2 --optimise-for 300\n"));
+    EXPECT_TRUE(contains(run, " --name thing --domain wide --divisions 5 --switches pq3Y --order 0 --tets cdt --effort "
+                              "2 --tetgen-for 150 --optimise-for 300\n"));
 }
 
 TEST_F(Load, keeps_repaired_scenes_apart_and_says_what_was_done)
@@ -49,14 +50,15 @@ TEST_F(Load, keeps_repaired_scenes_apart_and_says_what_was_done)
     request.build.repair = true;
     EXPECT_TRUE(contains(error_of([&] { (void)load(); }), "its mesh was not to be repaired"));
     Scene made = expected();
-    made.build.repair = {true, 4, 3, 20, 1, 2};
+    made.build.repair = {true, 4, 3, 20, 1, 2, 0x1p-20, 0x1p-19};
     write_scene(prepared, made);
     use_builder("");
     (void)load();
-    EXPECT_TRUE(contains(read_text(folder / "runs"), "--optimise-for 300 --repair\n"));
+    EXPECT_TRUE(contains(read_text(folder / "runs"), "--optimise-for 300 --repair --weld 0\n"));
     const LoadedScene cached = load();
     EXPECT_TRUE(cached.from_cache);
     EXPECT_TRUE(contains(cached.messages.front(), "4 pairs of triangles crossed, and 3 triangles were cut into 20"));
+    EXPECT_TRUE(contains(cached.messages.at(1), "the repair moved faces by up to 1.9e-06 to make one of near layers"));
     request.build.repair = false;
     EXPECT_TRUE(contains(error_with("exit " + std::to_string(BUILDER_SELF_INTERSECTION)), "give `--repair`, or "));
 }
@@ -235,33 +237,45 @@ TEST_F(Load, tries_other_switches_where_tetgen_fails_on_tets_for_rays)
     Scene made = expected();
     request.build.divisions = 3;
     made.domain = make_cubes(3).domain;
-    made.build.switches = "pq5Y";
+    made.build.switches = "pY0/2/2";
+    made.build.order = 1;
     made.build.optimised = {TetsKind::rays, TetsKind::rays, "", request.build.effort, 2, 1, 0.1};
     write_scene(prepared, made);
-    use_builder("case \"$*\" in *'--switches pY '*) kill -SEGV $$;; esac");
+    use_builder("case \"$*\" in *'--switches pY0/2/2 --order 1 '*) ;; *) kill -SEGV $$;; esac");
     const LoadedScene loaded = load();
-    EXPECT_EQ(loaded.scene.build.switches, "pq5Y");
+    EXPECT_EQ(loaded.scene.build.switches, "pY0/2/2");
     ASSERT_FALSE(loaded.messages.empty());
     EXPECT_TRUE(contains(loaded.messages.front(), "TetGen failed with switches pY (the builder crashed"));
-    EXPECT_TRUE(contains(loaded.messages.front(), "; trying pq5Y instead"));
+    EXPECT_TRUE(contains(loaded.messages.front(), "; trying others"));
+    EXPECT_TRUE(contains(loaded.messages.at(1), "with switches pY0/2/2 in order 1, at attempt 3"));
     const LoadedScene again = load();
     EXPECT_TRUE(again.from_cache);
-    EXPECT_TRUE(contains(again.messages.front(), "made with TetGen's switches pq5Y, since pY failed"));
+    EXPECT_TRUE(contains(again.messages.front(), "made with TetGen's switches pY0/2/2, since pY failed"));
     request.build.switches = "pYM"; // the user's own: no others are tried
     use_builder("case \"$*\" in *'--switches pYM '*) kill -SEGV $$;; esac");
     EXPECT_TRUE(contains(error_of([&] { (void)load(); }), "crashed (signal 11"));
 }
 
-TEST_F(Load, tries_all_other_switches_in_order_and_names_them_where_none_helps)
+TEST_F(Load, tries_all_other_ways_and_says_how_many_where_none_helps)
 {
     request.build = default_build(TetsKind::cdt);
     request.build.divisions = 5;
     const std::string refused = std::to_string(BUILDER_TETGEN_REFUSED);
     const std::string error = error_with("exit " + refused);
-    EXPECT_TRUE(contains(error, "with switches pq5Y, then pq5YMT1e-13, then p, then pMT1e-13: TetGen refused the mesh"))
+    const auto attempts = fallback_attempts(request.build);
+    EXPECT_TRUE(
+        contains(error, fmt::format("with switches pq5Y and {} other ways, the last pMT1e-13: TetGen refused the "
+                                    "mesh",
+                                    attempts.size())))
         << error;
-    EXPECT_EQ(fallback_switches(default_build(TetsKind::rays)),
-              (std::vector<std::string>{"pq5Y", "pq5YMT1e-13", "p", "pMT1e-13"}));
+    EXPECT_EQ(attempts.front(), (TetsAttempt{"pq5Y0/2/2"}));
+    BuildOptions rays = default_build(TetsKind::rays);
+    const auto is_welded = [](const TetsAttempt& attempt) { return attempt.weld > 0; };
+    EXPECT_TRUE(std::ranges::none_of(fallback_attempts(rays), is_welded)) << "only a repair may move vertices";
+    rays.repair = true;
+    EXPECT_TRUE(std::ranges::any_of(fallback_attempts(rays), is_welded));
+    rays.switches = "pq2";
+    EXPECT_TRUE(fallback_attempts(rays).empty()) << "the user's own";
     EXPECT_TRUE(contains(error_with("exit " + std::to_string(BUILDER_SELF_INTERSECTION)), "with switches pq5Y: "))
         << "other switches do not help";
 }
@@ -281,7 +295,7 @@ TEST_F(Load, reports_a_hang)
     request.build.time_limit_s = 0.3;
     const std::string error = error_with("echo 'stage: tetgen' >&2; sleep 60");
     EXPECT_TRUE(contains(error, "invalid_input: building scene thing"));
-    EXPECT_TRUE(contains(error, "time limit of 0.3 s"));
+    EXPECT_TRUE(contains(error, "limit of 0.3 s of processor time"));
     EXPECT_TRUE(contains(error, "--time-limit"));
     EXPECT_TRUE(contains(error, "last stage: tetgen"));
     EXPECT_TRUE(cache_is_clean());

@@ -41,9 +41,9 @@ Scene sample_scene()
                                      7,
                                      {{"moves", 8, 0.75, 0.5}, {"flips"}},
                                      OptimiserEnd::out_of_time};
-    const RepairInfo repair = {true, 5, 6, 7, 8, 9};
+    const RepairInfo repair = {true, 5, 6, 7, 8, 9, 0.5, 0.25};
     scene.build = {
-        "file \"x\".off", 0x123456789ABCDEFu, "pq5Y", "TetGen 1.5", 1.25, {10, -20, 0.1}, 0.5, -7, 1, 2, 3, 4,
+        "file \"x\".off", 0x123456789ABCDEFu, "pq5Y", 3, "TetGen 1.5", 1.25, {10, -20, 0.1}, 0.5, -7, 1, 2, 3, 4,
         repair,           optimised};
     for (std::uint32_t i = 0; i < scene.mesh.triangles.size(); ++i)
         scene.origins.push_back(i / 2);

@@ -3,24 +3,28 @@
 #include "core/base/exact.h"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
-#include <CGAL/Exact_rational.h>
-#include <CGAL/Simple_cartesian.h>
+#include <CGAL/Constrained_triangulation_plus_2.h>
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/intersections.h>
 
 #include <array>
-#include <map>
+#include <exception>
+#include <unordered_map>
 #include <variant>
 
 namespace tetrace {
 namespace {
 
-using ExactKernel = CGAL::Simple_cartesian<CGAL::Exact_rational>;
+// Each number has an interval and computes exactly only what that cannot decide. What a triangle needs is made by the
+// thread that cuts it.
+using ExactKernel = CGAL::Exact_predicates_exact_constructions_kernel;
 using Number = ExactKernel::FT;
 using ExactPoint = ExactKernel::Point_3;
 using Segment = ExactKernel::Segment_3;
 using Triangle = ExactKernel::Triangle_3;
 using Corners = std::array<ExactPoint, 3>;
-using Delaunay = CGAL::Constrained_Delaunay_triangulation_2<ExactKernel, CGAL::Default, CGAL::Exact_intersections_tag>;
+using Delaunay = CGAL::Constrained_triangulation_plus_2<
+    CGAL::Constrained_Delaunay_triangulation_2<ExactKernel, CGAL::Default, CGAL::Exact_intersections_tag>>;
 using FlatPoint = Delaunay::Point;
 
 // std's from CGAL 6 on, boost's before.
@@ -45,9 +49,16 @@ std::vector<ExactPoint> shared_corners(const Corners& a, const Corners& b)
     return *held_shape<std::vector<ExactPoint>>(*shared);
 }
 
+float rounded(double number)
+{
+    return snap_to_grid(static_cast<float>(number));
+}
+
+// Of the exact value, which is computed only where the ends of the number's interval are rounded apart.
 float rounded(const Number& number)
 {
-    return snap_to_grid(static_cast<float>(CGAL::to_double(number)));
+    const auto [low, high] = CGAL::to_interval(number);
+    return rounded(low) == rounded(high) ? rounded(low) : rounded(CGAL::to_double(number.exact()));
 }
 
 // A triangle's plane, seen along the axis that its normal leans to most.
@@ -82,6 +93,8 @@ private:
     int along_ = 0;
 };
 
+using Piece = std::array<Float3, 3>;
+
 // A triangle, and the lines along which it is cut.
 class CutTriangle {
 public:
@@ -98,11 +111,14 @@ public:
         for (std::size_t i = 0; flat.size() > 2 && i < flat.size(); ++i)
             delaunay_.insert_constraint(flat[i], flat[(i + 1) % flat.size()]);
     }
-    [[nodiscard]] std::vector<std::array<Float3, 3>> pieces() const
+    [[nodiscard]] std::vector<Piece> pieces() const
     {
-        std::vector<std::array<Float3, 3>> pieces;
-        for (auto face = delaunay_.finite_faces_begin(); face != delaunay_.finite_faces_end(); ++face) {
-            const auto corner = [&](int i) { return plane_.lifted(face->vertex(i)->point()); };
+        std::unordered_map<const void*, Float3> lifted;
+        for (const auto vertex : delaunay_.finite_vertex_handles())
+            lifted.emplace(&*vertex, plane_.lifted(vertex->point()));
+        std::vector<Piece> pieces;
+        for (const auto face : delaunay_.finite_face_handles()) {
+            const auto corner = [&](int i) { return lifted.at(&*face->vertex(i)); };
             const bool turned = plane_.is_turned();
             pieces.push_back({corner(0), corner(turned ? 2 : 1), corner(turned ? 1 : 2)});
         }
@@ -124,36 +140,44 @@ Corners corners_of(const TriangleMesh& mesh, std::uint32_t triangle)
     return corners;
 }
 
-std::map<std::uint32_t, CutTriangle> cut(const TriangleMesh& mesh, std::span<const TrianglePair> pairs)
+std::vector<Piece> cut(const TriangleMesh& mesh, std::uint32_t triangle, std::span<const std::uint32_t> others)
 {
-    std::map<std::uint32_t, CutTriangle> triangles;
-    const auto triangle_of = [&](std::uint32_t triangle, const Corners& corners) -> CutTriangle& {
-        return triangles.try_emplace(triangle, corners).first->second;
-    };
-    for (const auto& [first, second] : pairs) {
-        const Corners a = corners_of(mesh, first), b = corners_of(mesh, second);
-        const std::vector<ExactPoint> shared = shared_corners(a, b);
-        triangle_of(first, a).add(shared);
-        triangle_of(second, b).add(shared);
-    }
-    return triangles;
+    const Corners corners = corners_of(mesh, triangle);
+    CutTriangle pieces(corners);
+    for (const std::uint32_t other : others)
+        pieces.add(shared_corners(corners, corners_of(mesh, other)));
+    return pieces.pieces();
 }
 
 } // namespace
 
 CutMesh cut_along_intersections(const TriangleMesh& mesh, std::span<const TrianglePair> pairs)
 {
-    const std::map<std::uint32_t, CutTriangle> triangles = cut(mesh, pairs);
+    std::vector<std::vector<std::uint32_t>> others(mesh.triangles.size());
+    for (const auto& [first, second] : pairs) {
+        others[first].push_back(second);
+        others[second].push_back(first);
+    }
+    std::vector<std::vector<Piece>> pieces(others.size());
+    std::exception_ptr failure;
+#pragma omp parallel for schedule(dynamic, 4)
+    for (std::uint32_t i = 0; i < others.size(); ++i) {
+        try {
+            if (!others[i].empty()) pieces[i] = cut(mesh, i, others[i]);
+        } catch (...) {
+#pragma omp critical
+            failure = std::current_exception();
+        }
+    }
+    if (failure) std::rethrow_exception(failure);
     CutMesh result;
     result.mesh.vertices = mesh.vertices;
-    auto next = triangles.begin();
-    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-        if (next == triangles.end() || next->first != i) {
+    for (std::uint32_t i = 0; i < others.size(); ++i) {
+        if (others[i].empty()) {
             result.mesh.triangles.push_back(mesh.triangles[i]);
             result.parents.push_back(i);
-            continue;
         }
-        for (const std::array<Float3, 3>& piece : (next++)->second.pieces()) {
+        for (const Piece& piece : pieces[i]) {
             const auto first = static_cast<std::uint32_t>(result.mesh.vertices.size());
             result.mesh.vertices.insert(result.mesh.vertices.end(), piece.begin(), piece.end());
             result.mesh.triangles.push_back({first, first + 1, first + 2});

@@ -2,6 +2,7 @@
 
 #include "scenes/builder/failure.h"
 #include "scenes/builder/repair/arrangement.h"
+#include "scenes/builder/repair/weld.h"
 #include "scenes/builder/triple_hash.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -9,8 +10,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
-#include <set>
+#include <map>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -21,59 +23,134 @@ namespace tetrace {
 
 namespace {
 
-// Replaces the triangles of these pairs by their pieces; returns the origins of what was cut.
-std::set<std::uint32_t> cut_once(Scene& scene, const std::vector<TrianglePair>& pairs)
+double in_mesh_units(double length, const BuildInfo& build)
 {
-    std::set<std::uint32_t> cut;
-    for (const auto& [first, second] : pairs)
-        cut.insert({scene.origins[first], scene.origins[second]});
-    CutMesh pieces = cut_along_intersections(scene.mesh, pairs);
-    scene.mesh = std::move(pieces.mesh);
-    for (std::uint32_t& parent : pieces.parents)
-        parent = scene.origins[parent];
-    scene.origins = std::move(pieces.parents);
-    return cut;
+    return std::ldexp(length, -build.scale_exponent);
 }
 
-[[noreturn]] void give_up(const Scene& scene, std::size_t pairs)
-{
-    throw BuilderFailure(
-        BUILDER_SELF_INTERSECTION,
-        fmt::format("repairing {}: after {} passes {} pairs of pieces cross, since rounding to float "
-                    "moves them; faces that nearly overlap are the usual cause: remove one of them, or "
-                    "merge nearly equal vertices, in another program",
-                    scene.build.source, scene.build.repair.passes, pairs));
-}
+constexpr std::size_t max_growth = 4; // passes that more than cut what is new lead nowhere
+
+// One way to repair a mesh, from its triangles as they are; the passes stop where it leads nowhere.
+class Way {
+public:
+    Way(const Scene& scene, const std::function<void(const std::string&)>& tell) : result(scene), tell_(tell) {}
+    virtual ~Way() = default;
+
+    // Whether no pair crosses at the end.
+    bool walk(std::uint64_t crossing_pairs, bool at_least_once)
+    {
+        RepairInfo& info = result.build.repair;
+        info.crossing_pairs = crossing_pairs;
+        std::size_t triangles_at_first = 0; // after the first pass
+        for (auto pairs = intersecting_pairs(result.mesh); !pairs.empty() || (at_least_once && info.passes == 0);
+             pairs = intersecting_pairs(result.mesh)) {
+            left = pairs.size();
+            const bool grows = info.passes > 1 && result.mesh.triangles.size() > max_growth * triangles_at_first;
+            if (info.passes == max_repair_passes || left > max_pairs_of_pieces(crossing_pairs) || grows) return false;
+            ++info.passes;
+            if (tell_) tell_(fmt::format("repairing{}, pass {}: {} pairs cross", manner(), info.passes, left));
+            pass(pairs);
+            const CleanUp cleaned = clean_up(result.mesh, result.origins);
+            info.dropped += cleaned.degenerate_triangles + cleaned.duplicate_triangles;
+            if (info.passes == 1) triangles_at_first = result.mesh.triangles.size();
+        }
+        count_pieces();
+        return true;
+    }
+
+    Scene result;
+    std::size_t left = 0; // pairs that cross
+
+protected:
+    virtual void pass(const std::vector<TrianglePair>& pairs) = 0;
+    [[nodiscard]] virtual std::string manner() const { return ""; }
+
+private:
+    void count_pieces()
+    {
+        std::map<std::uint32_t, std::uint64_t> pieces;
+        for (const std::uint32_t origin : result.origins)
+            ++pieces[origin];
+        for (const auto& [origin, count] : pieces) {
+            result.build.repair.cut_triangles += count > 1 ? 1 : 0;
+            result.build.repair.pieces += count > 1 ? count : 0;
+        }
+    }
+
+    const std::function<void(const std::string&)>& tell_;
+};
+
+class Exactly : public Way {
+public:
+    using Way::Way;
+
+protected:
+    void pass(const std::vector<TrianglePair>& pairs) override
+    {
+        CutMesh pieces = cut_along_intersections(result.mesh, pairs);
+        result.mesh = std::move(pieces.mesh);
+        for (std::uint32_t& parent : pieces.parents)
+            parent = result.origins[parent];
+        result.origins = std::move(pieces.parents);
+    }
+};
+
+class Welding : public Way {
+public:
+    Welding(const Scene& scene, double tolerance, const std::function<void(const std::string&)>& tell)
+        : Way(scene, tell)
+    {
+        result.build.repair.tolerance = tolerance;
+    }
+
+protected:
+    void pass(const std::vector<TrianglePair>&) override
+    {
+        RepairInfo& info = result.build.repair;
+        weld(result.mesh, result.origins, info.tolerance);
+        info.moved += 1.5 * info.tolerance;
+    }
+    [[nodiscard]] std::string manner() const override
+    {
+        return fmt::format(" with a tolerance of {:.1e}", in_mesh_units(result.build.repair.tolerance, result.build));
+    }
+};
 
 } // namespace
 
-void repair(Scene& scene, const std::function<void(const std::string&)>& tell)
+void repair(Scene& scene, double at_least, const std::function<void(const std::string&)>& tell)
 {
-    RepairInfo& info = scene.build.repair;
-    std::set<std::uint32_t> cut;
-    for (;; ++info.passes) {
-        const std::vector<TrianglePair> pairs = intersecting_pairs(scene.mesh);
-        if (info.passes == 0) info.crossing_pairs = pairs.size();
-        if (pairs.empty()) break;
-        const bool grows = pairs.size() > max_pairs_of_pieces(info.crossing_pairs);
-        if (info.passes == max_repair_passes || grows) give_up(scene, pairs.size());
-        if (tell) tell(fmt::format("repairing, pass {}: {} pairs cross", info.passes + 1, pairs.size()));
-        cut.merge(cut_once(scene, pairs));
-        const CleanUp cleaned = clean_up(scene.mesh, scene.origins);
-        info.dropped += cleaned.degenerate_triangles + cleaned.duplicate_triangles;
-    }
-    info.cut_triangles = cut.size();
-    for (const std::uint32_t origin : scene.origins)
-        info.pieces += cut.count(origin);
+    const std::uint64_t crossing_pairs = intersecting_pairs(scene.mesh).size();
+    std::size_t left = 0;
+    const auto repaired = [&](Way&& way) {
+        const bool good = way.walk(crossing_pairs, at_least > 0);
+        left = way.left;
+        if (good) scene = std::move(way.result);
+        return good;
+    };
+    if (at_least == 0 && repaired(Exactly(scene, tell))) return;
+    for (const double tolerance : weld_tolerances)
+        if (tolerance >= at_least && repaired(Welding(scene, tolerance, tell))) return;
+    throw BuilderFailure(
+        BUILDER_SELF_INTERSECTION,
+        fmt::format("repairing {}: {} pairs of triangles cross, and {} pairs of their pieces, after cutting them "
+                    "exactly and with tolerances up to {:.1e}; remove faces that nearly overlap, or merge nearly equal "
+                    "vertices, in another program",
+                    scene.build.source, crossing_pairs, left, in_mesh_units(weld_tolerances.back(), scene.build)));
 }
 
-std::string repair_text(const RepairInfo& info)
+std::string repair_text(const BuildInfo& build)
 {
-    if (info.crossing_pairs == 0) return "no triangles cross: there was nothing to repair";
-    return fmt::format("{} pairs of triangles crossed: {} triangles were cut into {} pieces in {} {}; {} others lay on "
-                       "these or had no area after rounding, and were dropped",
-                       info.crossing_pairs, info.cut_triangles, info.pieces, info.passes,
-                       info.passes == 1 ? "pass" : "passes", info.dropped);
+    const RepairInfo& info = build.repair;
+    if (info.passes == 0) return "no triangles cross: there was nothing to repair";
+    const std::string done =
+        fmt::format("{} pairs of triangles crossed: {} triangles were cut into {} pieces in {} {}; {} others lay on "
+                    "these or had no area after rounding, and were dropped",
+                    info.crossing_pairs, info.cut_triangles, info.pieces, info.passes,
+                    info.passes == 1 ? "pass" : "passes", info.dropped);
+    if (info.tolerance == 0) return done;
+    return fmt::format("{}; what was nearer than {:.1e} was made one, and nothing moved by more than {:.1e}", done,
+                       in_mesh_units(info.tolerance, build), in_mesh_units(info.moved, build));
 }
 
 namespace {

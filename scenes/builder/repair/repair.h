@@ -3,6 +3,7 @@
 #include "core/mesh/scene.h"
 #include "core/mesh/triangle_mesh.h"
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -10,25 +11,30 @@
 
 namespace tetrace {
 
-/// Passes after which repair() gives up. The crossing meshes of CGAL's data were clean after one (results/repair.md).
+/// Passes after which repair() gives up a way. The crossing meshes of CGAL's data were clean after one
+/// (results/repair.md).
 inline constexpr std::uint32_t max_repair_passes = 10;
 
-/// Crossing pairs of pieces at which it gives up, for this many in the mesh: faces that nearly overlap are shattered,
-/// and each pass makes more.
+/// Crossing pairs of pieces at which it gives up a way, for this many in the mesh: faces that nearly overlap are
+/// shattered, and each pass makes more.
 [[nodiscard]] constexpr std::uint64_t max_pairs_of_pieces(std::uint64_t crossing_pairs)
 {
     return 10 * crossing_pairs + 1000;
 }
 
-/// Cuts triangles that cross, overlap or touch along their exact intersections, until every two triangles meet only in
-/// shared vertices and edges. scene: cleaned (clean_up) and placed, with as many origins as triangles; mesh, origins
-/// and build.repair change. The mesh's bounding box does not grow. Throws BuilderFailure{BUILDER_SELF_INTERSECTION}
-/// where some pairs are left after max_repair_passes,
-/// or more than max_pairs_of_pieces().
-void repair(Scene& scene, const std::function<void(const std::string& stage)>& tell = {});
+/// The tolerances of weld() that repair() tries, in domain units.
+inline constexpr std::array<double, 3> weld_tolerances = {0x1p-20, 0x1p-18, 0x1p-16};
 
-/// What was done, in one sentence.
-[[nodiscard]] std::string repair_text(const RepairInfo& info);
+/// Cuts triangles that cross, overlap or touch, until every two triangles meet only in shared vertices and edges. First
+/// along their exact intersections, by which no vertex moves. Where rounding makes new crossings without end, begins
+/// again with weld() and each of weld_tolerances. at_least: with this tolerance or more, whether triangles cross or
+/// not; 0: as said. scene: cleaned (clean_up) and placed, with as many origins as triangles; mesh, origins and
+/// build.repair change. The mesh's bounding box grows by no more than the tolerance. Throws
+/// BuilderFailure{BUILDER_SELF_INTERSECTION} where no way ends.
+void repair(Scene& scene, double at_least = 0, const std::function<void(const std::string& stage)>& tell = {});
+
+/// What was done, in one sentence. Lengths in mesh units.
+[[nodiscard]] std::string repair_text(const BuildInfo& build);
 
 /// What clean_up() took away.
 struct CleanUp {
