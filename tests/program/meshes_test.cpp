@@ -236,7 +236,7 @@ TEST_F(Meshes, whose_tets_cannot_be_built_are_traced_through_bvhs)
                 " --time-limit 0.01 --size 32 --rays primary,shadow,ao,diffuse,random --structure cdt,bvh "
                 "--layout half32,bvh2,cwbvh,embree --backend openmp,embree --out a.json");
         EXPECT_EQ(ended.code, 2) << "of the rows without tets: " << ended.errors;
-        EXPECT_TRUE(contains(ended.errors, "the time limit of 0.01 s was reached")) << ended.errors;
+        EXPECT_TRUE(contains(ended.errors, "the limit of 0.01 s of processor time was reached")) << ended.errors;
         EXPECT_TRUE(contains(ended.errors, "its rows of structure bvh run without tets")) << ended.errors;
         std::size_t through_bvhs = 0, without_tets = 0;
         for (const auto& row : rows()) {
@@ -260,7 +260,7 @@ TEST_F(Meshes, whose_tets_cannot_be_built_are_traced_through_bvhs)
     EXPECT_EQ(bench.code, 2) << bench.errors;
     EXPECT_TRUE(contains(bench.out, "banana: no tets, 25,000 triangles")) << bench.out;
     EXPECT_TRUE(contains(nlohmann::json::parse(file("a.json"))["tetrace"]["scenes"][0]["no_tets"].get<std::string>(),
-                         "the time limit of 0.01 s"));
+                         "the limit of 0.01 s of processor time"));
     EXPECT_EQ(run("build --scene banana --time-limit 0.01").code, 2) << "nothing is built";
     EXPECT_EQ(run("render --scene banana --time-limit 0.01 --size 32 --views 0 --structure bvh --out a.ppm").code, 0);
 }
