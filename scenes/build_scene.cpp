@@ -219,14 +219,15 @@ struct Run {
         return outcome.end == ChildOutcome::End::exited &&
                (outcome.code == BUILDER_TETGEN_REFUSED || outcome.code == BUILDER_ABSURD_OUTPUT);
     }
+    /// Whether triangles cross: there was no repair, or it had no end.
     [[nodiscard]] bool repair_failed() const
     {
         return outcome.end == ChildOutcome::End::exited && outcome.code == BUILDER_SELF_INTERSECTION;
     }
-    /// Whether a scene of only the mesh is possible: nothing was found wrong with the mesh.
+    /// Whether a scene of only the mesh is possible: rays can be traced through its triangles.
     [[nodiscard]] bool only_tets_failed() const
     {
-        return tetgen_failed() || outcome.end == ChildOutcome::End::timed_out ||
+        return tetgen_failed() || repair_failed() || outcome.end == ChildOutcome::End::timed_out ||
                (outcome.end == ChildOutcome::End::exited && outcome.code == BUILDER_OUT_OF_MEMORY);
     }
 };
@@ -307,6 +308,7 @@ BuildEnd build_scene(const fs::path& mesh, const fs::path& out, const std::strin
     if (!options.mesh_will_do || !run.only_tets_failed()) throw error;
     BuildOptions mesh_only = options;
     mesh_only.time_limit_s = std::max(options.time_limit_s, min_mesh_only_s);
+    if (run.repair_failed()) mesh_only.repair = false;
     std::vector<std::string> arguments = arguments_of(mesh, out, label, mesh_only, {options.switches});
     arguments.emplace_back("--mesh-only");
     const Run second = run_builder(builder, arguments, label, mesh_only, progress);

@@ -39,7 +39,8 @@ struct BuildEnd {
 
 /// Runs tetrace-builder on a mesh file within the options' limits; it writes `out`. If TetGen fails, runs it again with
 /// each of fallback_attempts() in what is left of the time, until one of them will do.
-/// If TetGen fails with all of them, crashes, or reaches the limit of time or memory, and the mesh will do, the builder
+/// If triangles cross, or TetGen fails with all of them, crashes, or reaches the limit of time or memory, and the mesh
+/// will do, the builder
 /// is run once more for only the mesh, within the same limits, but at least a minute. notes: the builder's remarks are
 /// appended. progress: called with the stage about ten times per second. Throws Error; its text says how the builder
 /// ended, its switches, its last stage and what to try. Kinds: missing (no builder, or a file that it needs),

@@ -169,6 +169,7 @@ void require_no_self_intersection(const Scene& scene)
 void repair_or_refuse(Scene& scene, const BuilderOptions& options, const BuilderTalk& talk)
 {
     scene.build.repair.asked = options.repair;
+    if (!options.repair && options.mesh_only) return; // a BVH has no need of it
     if (!options.repair) {
         talk.stage("looking for self-intersections");
         return require_no_self_intersection(scene);

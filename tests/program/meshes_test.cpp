@@ -227,6 +227,22 @@ TEST_F(Meshes, whose_tets_are_still_tetgens_are_listed_so_with_the_reason)
     EXPECT_FALSE(contains(ended.out, "the optimiser in ")) << "it has not listed operations";
 }
 
+TEST_F(Meshes, whose_triangles_cross_are_traced_through_bvhs_as_they_are)
+{
+    write_file(folder_ / "pair.off", to_off(crossing_pair()));
+    for (const std::string verb : {"check", "bench --samples 3 --sample-time 0"}) {
+        const Ended ended =
+            run(verb + " --scene pair.off --size 32 --layout half32,bvh2 --backend openmp --out a.json");
+        EXPECT_EQ(ended.code, 2) << "of the rows without tets: " << ended.errors;
+        EXPECT_TRUE(contains(ended.errors, "1 pairs of triangles intersect")) << ended.errors;
+        EXPECT_TRUE(contains(ended.errors, "its rows of structure bvh run without tets")) << ended.errors;
+        for (const auto& row : rows())
+            EXPECT_EQ(row["status"], row["structure"] == "cdt" ? "error" : "ok") << row["name"] << row["reason"];
+    }
+    EXPECT_EQ(run("check --scene pair.off --repair --size 32 --layout half32,bvh2 --backend openmp").code, 0);
+    EXPECT_EQ(run("render --scene pair.off --size 32 --views 0 --structure bvh --out a.ppm").code, 0);
+}
+
 // The limit of time ends the builder before it has tets.
 TEST_F(Meshes, whose_tets_cannot_be_built_are_traced_through_bvhs)
 {
