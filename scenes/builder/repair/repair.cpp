@@ -36,23 +36,24 @@ public:
     Way(const Scene& scene, const std::function<void(const std::string&)>& tell) : result(scene), tell_(tell) {}
     virtual ~Way() = default;
 
-    // Whether no pair crosses at the end.
-    bool walk(std::uint64_t crossing_pairs, bool at_least_once)
+    // Whether no pair crosses at the end. pairs: those that do at first.
+    bool walk(std::vector<TrianglePair> pairs, bool at_least_once)
     {
         RepairInfo& info = result.build.repair;
-        info.crossing_pairs = crossing_pairs;
+        info.crossing_pairs = pairs.size();
         std::size_t triangles_at_first = 0; // after the first pass
-        for (auto pairs = intersecting_pairs(result.mesh); !pairs.empty() || (at_least_once && info.passes == 0);
-             pairs = intersecting_pairs(result.mesh)) {
+        while (!pairs.empty() || (at_least_once && info.passes == 0)) {
             left = pairs.size();
             const bool grows = info.passes > 1 && result.mesh.triangles.size() > max_growth * triangles_at_first;
-            if (info.passes == max_repair_passes || left > max_pairs_of_pieces(crossing_pairs) || grows) return false;
+            if (info.passes == max_repair_passes || left > max_pairs_of_pieces(info.crossing_pairs) || grows)
+                return false;
             ++info.passes;
             if (tell_) tell_(fmt::format("repairing{}, pass {}: {} pairs cross", manner(), info.passes, left));
             pass(pairs);
             const CleanUp cleaned = clean_up(result.mesh, result.origins);
             info.dropped += cleaned.degenerate_triangles + cleaned.duplicate_triangles;
             if (info.passes == 1) triangles_at_first = result.mesh.triangles.size();
+            pairs = intersecting_pairs(result.mesh);
         }
         count_pieces();
         return true;
@@ -120,10 +121,10 @@ protected:
 
 void repair(Scene& scene, double at_least, const std::function<void(const std::string&)>& tell)
 {
-    const std::uint64_t crossing_pairs = intersecting_pairs(scene.mesh).size();
+    const std::vector<TrianglePair> pairs = intersecting_pairs(scene.mesh);
     std::size_t left = 0;
     const auto repaired = [&](Way&& way) {
-        const bool good = way.walk(crossing_pairs, at_least > 0);
+        const bool good = way.walk(pairs, at_least > 0);
         left = way.left;
         if (good) scene = std::move(way.result);
         return good;
@@ -136,7 +137,7 @@ void repair(Scene& scene, double at_least, const std::function<void(const std::s
         fmt::format("repairing {}: {} pairs of triangles cross, and {} pairs of their pieces, after cutting them "
                     "exactly and with tolerances up to {:.1e}; remove faces that nearly overlap, or merge nearly equal "
                     "vertices, in another program",
-                    scene.build.source, crossing_pairs, left, in_mesh_units(weld_tolerances.back(), scene.build)));
+                    scene.build.source, pairs.size(), left, in_mesh_units(weld_tolerances.back(), scene.build)));
 }
 
 std::string repair_text(const BuildInfo& build)
