@@ -135,6 +135,10 @@ TEST_F(Load, gives_only_the_mesh_if_only_tetgen_fails_and_the_mesh_is_enough)
         request.build.mesh_will_do = true;
     }
     request.build.time_limit_s = 600;
+    request.build.repair = true;
+    use_builder("case \"$*\" in *--repair*) exit " + std::to_string(BUILDER_SELF_INTERSECTION) + ";; esac; " + alone);
+    EXPECT_TRUE(load().no_tets) << "a repair without end: the mesh as it is";
+    request.build.repair = false;
     for (const int code : {BUILDER_BAD_MESH, BUILDER_INTERNAL, BUILDER_USAGE})
         EXPECT_NE(error_with(alone + "exit " + std::to_string(code)), "") << "not TetGen's fault";
     EXPECT_TRUE(contains(error_with("exit " + std::to_string(BUILDER_TETGEN_REFUSED)), "TetGen refused the mesh"))

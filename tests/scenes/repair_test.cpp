@@ -242,6 +242,17 @@ TEST(Repair, welds_where_it_is_asked_to_though_no_triangles_cross)
     EXPECT_NEAR(area, 1 - 0.8 * 0.8 / 2, 1e-5) << "what both cover is there once";
 }
 
+TEST(Repair, welds_vertices_that_are_nearly_one)
+{
+    const float gap = 0x1p-23f;
+    const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, gap, 0}, {gap, 1, gap}, {1, 1, 0.5f}},
+                            {{0, 1, 2}, {3, 5, 4}}};
+    Scene scene = scene_of(mesh);
+    repair(scene, weld_tolerances.front());
+    EXPECT_EQ(scene.mesh.vertices, (std::vector<Float3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0.5f}}));
+    EXPECT_EQ(scene.mesh.triangles, (std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {1, 3, 2}}));
+}
+
 TEST(Repair, welds_a_vertex_to_the_edge_that_it_nearly_touches)
 {
     const float gap = 0x1p-23f;
