@@ -72,10 +72,10 @@ struct BuildOptions {
     TetsKind tets = TetsKind::cdt;
     int effort = usual_effort;     ///< of the optimiser, 0 to 3; for TetsKind::rays
     std::uint32_t resolution = 16; ///< of `cubes`: cubes along each axis
-    double time_limit_s = 600;     ///< for the builder
+    double time_limit_s = 600;     ///< of processor time, for the builder
     double optimise_s = 0;         ///< for its optimiser; 0: half of time_limit_s
     std::uint64_t memory_limit_bytes = std::uint64_t{8} << 30;
-    bool mesh_will_do = false;    ///< whether a scene without tets is loaded if TetGen fails or reaches a limit
+    bool mesh_will_do = false;    ///< whether a scene without tets is loaded if triangles cross or TetGen fails
     bool keep_unfinished = false; ///< whether Ctrl-C lets the optimiser end with what it has reached
 };
 

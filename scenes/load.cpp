@@ -152,7 +152,7 @@ bool MeshSceneLoader::read_cached()
             "{}: repaired when it was built: {} pairs of triangles crossed, and {} triangles were cut into {}", label_,
             repair.crossing_pairs, repair.cut_triangles, repair.pieces));
     if (difference.empty() && repair.tolerance > 0)
-        loaded_.messages.push_back(fmt::format("{}: the repair moved faces by up to {:.1e} to make one of near layers",
+        loaded_.messages.push_back(fmt::format("{}: the repair moved faces by up to {:.1e} to merge near layers",
                                                label_, std::ldexp(repair.moved, -info.scale_exponent)));
     if (difference.empty() && info.switches != request_.build.switches)
         loaded_.messages.push_back(fmt::format("{}: made with TetGen's switches {}, since {} failed", label_,

@@ -26,8 +26,8 @@ struct LoadedScene {
 /// of its own, and never taken for the whole one. Throws Error{usage} for a name that is neither in the catalogue nor a
 /// path (lists the accepted ones) and for switches that the builder does not accept, Error{missing} for a file or a
 /// mesh that is not available here, Error{invalid_input} with the builder's finding, Error{interrupted} after Ctrl-C
-/// (the builder is ended too). With BuildOptions::mesh_will_do, TetGen's failures are not thrown but returned, with a
-/// scene without tets.
+/// (the builder is ended too). With BuildOptions::mesh_will_do, triangles that cross and TetGen's failures are not
+/// thrown but returned, with a scene without tets.
 [[nodiscard]] LoadedScene load_scene(const SceneRequest& request, const Progress& progress);
 
 } // namespace tetrace

@@ -93,10 +93,9 @@ std::vector<OptionRow> scene_options()
              "and atrium; cubes, banana and atrium if the first two are missing.",
          building, true, append_scenes},
         {"Scenes", "--repair", "",
-         "If triangles of a mesh cross, overlap or touch, cut them along their exact intersections; where that has no "
-         "end, "
-         "or TetGen fails, make one of near layers, and say by how much faces moved. Without it, "
-         "such a mesh is refused. face_id in results still names the file's triangles.",
+         "If triangles of a mesh cross, overlap or touch, cut them along their exact intersections; if that never "
+         "ends, or TetGen fails, merge near layers, and say by how much faces moved. Without it, such a mesh has no "
+         "tets. face_id in results still names the file's triangles.",
          building, false, set(&Options::repair)},
         {"Scenes", "--domain", "KIND",
          "The box that the tetrahedralization fills: 'tight', the mesh's bounding box grown by 2 %, or 'wide', a "

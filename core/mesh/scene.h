@@ -64,7 +64,7 @@ struct RepairInfo {
     std::uint64_t pieces = 0;         ///< triangles of the scene that are parts of these
     std::uint64_t dropped = 0;        ///< parts that lay on another, or that rounding left without area
     std::uint32_t passes = 0;         ///< rounding makes new crossings, so that pieces may be cut again
-    double tolerance = 0;             ///< domain units; what was nearer was made one; 0: nothing was moved
+    double tolerance = 0;             ///< domain units; what was nearer was merged; 0: nothing was moved
     double moved = 0;                 ///< domain units; no vertex and no point of a face went farther
 
     friend bool operator==(const RepairInfo&, const RepairInfo&) = default;

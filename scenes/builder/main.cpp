@@ -116,8 +116,8 @@ std::optional<int> parse(int argc, char** argv, BuilderOptions& options)
     app.add_flag("--repair", options.repair,
                  "cut triangles that cross along their intersections, in place of refusing");
     app.add_option("--weld", options.weld,
-                   "with --repair: make one of what is nearer than this, in units of the domain, whose longest side "
-                   "has 1 to 2; default: 0, only where an exact repair does not end")
+                   "with --repair: merge what is nearer than this, in units of the domain, whose longest side "
+                   "has 1 to 2; default: 0, only if an exact repair never ends")
         ->check(CLI::Range(0.0, weld_tolerances.back()).description(""))
         ->type_name("T");
     app.add_option("--tetgen-for", options.tetgen_for_s,

@@ -58,7 +58,7 @@ TEST_F(Load, keeps_repaired_scenes_apart_and_says_what_was_done)
     const LoadedScene cached = load();
     EXPECT_TRUE(cached.from_cache);
     EXPECT_TRUE(contains(cached.messages.front(), "4 pairs of triangles crossed, and 3 triangles were cut into 20"));
-    EXPECT_TRUE(contains(cached.messages.at(1), "the repair moved faces by up to 1.9e-06 to make one of near layers"));
+    EXPECT_TRUE(contains(cached.messages.at(1), "the repair moved faces by up to 1.9e-06 to merge near layers"));
     request.build.repair = false;
     EXPECT_TRUE(contains(error_with("exit " + std::to_string(BUILDER_SELF_INTERSECTION)), "give `--repair`, or "));
 }

@@ -208,8 +208,7 @@ TEST(Repair, welds_layers_whose_exact_cuts_have_no_end)
         ++welded;
         EXPECT_EQ(info.tolerance, weld_tolerances.front());
         EXPECT_EQ(info.moved, 1.5 * info.passes * info.tolerance);
-        EXPECT_TRUE(
-            contains(repair_text(scene.build), "; what was nearer than 9.5e-07 was made one, and nothing moved"));
+        EXPECT_TRUE(contains(repair_text(scene.build), "; what was nearer than 9.5e-07 was merged, and nothing moved"));
         for (const Float3 v : scene.mesh.vertices) // nothing left the plane
             EXPECT_NEAR(v.z, 0.3f * v.x + 0.7f * v.y, 4e-6f) << seed;
         Double3 sum{};

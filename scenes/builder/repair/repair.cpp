@@ -150,7 +150,7 @@ std::string repair_text(const BuildInfo& build)
                     info.crossing_pairs, info.cut_triangles, info.pieces, info.passes,
                     info.passes == 1 ? "pass" : "passes", info.dropped);
     if (info.tolerance == 0) return done;
-    return fmt::format("{}; what was nearer than {:.1e} was made one, and nothing moved by more than {:.1e}", done,
+    return fmt::format("{}; what was nearer than {:.1e} was merged, and nothing moved by more than {:.1e}", done,
                        in_mesh_units(info.tolerance, build), in_mesh_units(info.moved, build));
 }
 

@@ -7,7 +7,7 @@
 
 namespace tetrace {
 
-/// One pass that makes one of what is nearer than the tolerance: vertices within half of it are merged, edges that pass
+/// One pass that merges what is nearer than the tolerance: vertices within half of it are merged, edges that pass
 /// each other and an edge that crosses a triangle get a common vertex, and every edge and triangle is cut at the
 /// vertices near it. So near layers become one, and triangles that cross share vertices and edges. In double
 /// arithmetic: whether triangles cross after it is for intersecting_pairs() to say. mesh: without degenerate triangles;
