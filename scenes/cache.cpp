@@ -1,5 +1,6 @@
 #include "scenes/cache.h"
 
+#include "core/base/cache_home.h"
 #include "core/base/error.h"
 #include "core/base/files.h"
 #include "core/base/hash.h"
@@ -220,19 +221,11 @@ std::string safe_name(std::string label)
     return label.empty() ? "scene" : label.substr(0, 100);
 }
 
-fs::path absolute_from_environment(const char* variable)
-{
-    const char* value = std::getenv(variable);
-    const fs::path path = value != nullptr ? value : "";
-    return path.is_absolute() ? path : fs::path();
-}
-
 } // namespace
 
 fs::path cache_directory()
 {
-    if (const fs::path given = absolute_from_environment("XDG_CACHE_HOME"); !given.empty()) return given / "tetrace";
-    if (const fs::path home = absolute_from_environment("HOME"); !home.empty()) return home / ".cache" / "tetrace";
+    if (const fs::path home = cache_home(); !home.empty()) return home / "tetrace";
     throw Error(ErrorKind::missing,
                 "looking for the cache: neither XDG_CACHE_HOME nor HOME names a folder by an absolute "
                 "path; set XDG_CACHE_HOME to a folder where scenes may be kept");
@@ -257,7 +250,11 @@ fs::path cached_scene_path(const std::string& label, std::uint64_t mesh_hash, co
     if (options.repair) key += " repaired";
     if (options.tets == TetsKind::rays)
         key += fmt::format(" effort {} optimiser {}", options.effort, optimiser_version);
-    return cache_directory() / fmt::format("{}-{}.tet", safe_name(label), hash_text(hash_of(key)));
+    const std::string name = fmt::format("{}-{}.tet", safe_name(label), hash_text(hash_of(key)));
+    std::error_code ignored; // then there is none
+    if (const fs::path home = closed_cache_home(); !home.empty() && fs::exists(home / "tetrace" / name, ignored))
+        return home / "tetrace" / name;
+    return cache_directory() / name;
 }
 
 fs::path cached_mesh_path(const std::string& name, std::uint64_t key)

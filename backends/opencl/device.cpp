@@ -143,6 +143,13 @@ FoundDevice described(const cl::Platform& platform, const cl::Device& handle)
     return found;
 }
 
+std::string short_name(std::string_view platform_name)
+{
+    if (platform_name == "Portable Computing Language") return "pocl";
+    if (platform_name.starts_with("NVIDIA")) return "nvidia";
+    return platform_name.empty() ? "opencl" : std::string(platform_name);
+}
+
 std::vector<FoundDevice> devices_of(const cl::Platform& platform)
 {
     std::vector<FoundDevice> devices;
@@ -151,21 +158,18 @@ std::vector<FoundDevice> devices_of(const cl::Platform& platform)
         platform.getDevices(CL_DEVICE_TYPE_ALL, &handles); // having none is no error for these bindings
         for (const cl::Device& handle : handles)
             devices.push_back(described(platform, handle));
-        if (handles.empty())
-            devices.push_back(unusable(trimmed(platform.getInfo<CL_PLATFORM_NAME>()),
-                                       "this platform has no device here: its hardware is missing or closed to us"));
+        if (!handles.empty()) return devices;
+        const std::string name = trimmed(platform.getInfo<CL_PLATFORM_NAME>());
+        devices.push_back(
+            unusable(name, short_name(name) == "pocl"
+                               ? "PoCL lists no device, as it does if its cache folder cannot be written to; set "
+                                 "XDG_CACHE_HOME or POCL_CACHE_DIR to one that can"
+                               : "this platform has no device here: its hardware is missing or closed to us"));
     } catch (const cl::Error& failure) {
         devices.push_back(unusable("a platform", std::string("its devices cannot be listed: ") + failure.what() +
                                                      " gave " + error_name(failure.err())));
     }
     return devices;
-}
-
-std::string short_name(std::string_view platform_name)
-{
-    if (platform_name == "Portable Computing Language") return "pocl";
-    if (platform_name.starts_with("NVIDIA")) return "nvidia";
-    return platform_name.empty() ? "opencl" : std::string(platform_name);
 }
 
 } // namespace

@@ -105,7 +105,9 @@ std::string man_page()
     for (const auto& [code, meaning] : exit_code_meanings)
         text += fmt::format(".TP\n.B {}\n{}\n", code, meaning);
     return text + ".SH ENVIRONMENT\n"
-                  ".TP\n.B XDG_CACHE_HOME\nWhere built scenes and compiled programs are kept, in its folder tetrace.\n"
+                  ".TP\n.B XDG_CACHE_HOME\nWhere built scenes and compiled programs are kept, in its folder tetrace; "
+                  "by default ~/.cache.\n"
+                  ".TP\n.B TMPDIR\nWhere they are during a run if that folder cannot be written to; by default /tmp.\n"
                   ".TP\n.B TETRACE_MESHES\nA folder with the catalogue's meshes, asked before the system's.\n"
                   ".TP\n.B OMP_NUM_THREADS\nHost threads, where \\-\\-threads is not given.\n"
                   ".TP\n.B NO_COLOR\nNo colours.\n";

@@ -5,6 +5,7 @@
 #include "bench/terminal/text.h"
 #include "bench/verbs/commands.h"
 #include "bench/verbs/ranks.h"
+#include "core/base/cache_home.h"
 #include "core/base/error.h"
 #include "core/isolation/driver_server.h"
 #include "core/isolation/isolation.h"
@@ -13,6 +14,8 @@
 #include <csignal>
 #include <exception>
 #include <fmt/format.h>
+#include <iterator>
+#include <memory>
 #include <new>
 
 namespace tetrace {
@@ -92,6 +95,18 @@ int run_verb(const Options& options)
     throw Error(ErrorKind::internal, "run_verb: no such verb");
 }
 
+/// Of verbs that build scenes or load drivers.
+std::unique_ptr<CacheHome> cache_of(Verb verb)
+{
+    constexpr Verb others[] = {Verb::scenes, Verb::compare, Verb::show,   Verb::report,
+                               Verb::merge,  Verb::help,    Verb::version};
+    if (std::ranges::find(others, verb) != std::end(others)) return nullptr;
+    auto cache = std::make_unique<CacheHome>();
+    if (verb == Verb::build) cache->keep();
+    if (const std::string note = cache->note(); !note.empty()) say("tetrace: " + note);
+    return cache;
+}
+
 int run_verb_or_rank(const Options& options)
 {
     const auto rank = is_shared(options) ? this_rank() : std::nullopt;
@@ -111,6 +126,7 @@ int run_program(const std::vector<std::string>& arguments)
         if (!arguments.empty() && arguments.front() == null_hardware_word)
             return run_null_hardware({arguments.begin() + 1, arguments.end()});
         const Options options = parse_options(arguments);
+        const auto cache = cache_of(options.verb);
         set_isolation(options.isolation, options.driver_limit_s);
         return run_verb_or_rank(options);
     } catch (const Error& error) {

@@ -1,0 +1,122 @@
+#include "core/base/cache_home.h"
+
+#include <fcntl.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <vector>
+
+namespace tetrace {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path absolute_from_environment(const char* variable)
+{
+    const char* value = std::getenv(variable);
+    const fs::path path = value != nullptr ? value : "";
+    return path.is_absolute() ? path : fs::path();
+}
+
+/// Why no file can be made in a folder, which need not exist yet; empty if one can.
+std::string why_closed(fs::path folder)
+{
+    for (;;) {
+        if (::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) == 0)
+            return fs::is_directory(folder) ? "" : std::strerror(ENOTDIR);
+        const int reason = errno;
+        if (reason != ENOENT || !folder.has_relative_path()) return std::strerror(reason);
+        folder = folder.parent_path();
+    }
+}
+
+bool runs_programs(const fs::path& folder)
+{
+    struct statvfs facts {};
+    return ::statvfs(folder.c_str(), &facts) == 0 && (facts.f_flag & ST_NOEXEC) == 0;
+}
+
+/// A new folder in the first of these that code may be loaded from, else in the first that takes one. Empty: in none.
+fs::path make_temporary()
+{
+    std::vector<fs::path> parents = {absolute_from_environment("TMPDIR"), "/tmp", "/var/tmp", "/dev/shm"};
+    std::erase_if(parents, [](const fs::path& parent) { return parent.empty() || !fs::is_directory(parent); });
+    std::ranges::stable_partition(parents, runs_programs);
+    for (const fs::path& parent : parents) {
+        std::string name = parent / "tetrace-cache-XXXXXX";
+        if (::mkdtemp(name.data()) != nullptr) return name;
+    }
+    return {};
+}
+
+fs::path& closed_home()
+{
+    static fs::path home;
+    return home;
+}
+
+} // namespace
+
+fs::path cache_home()
+{
+    if (fs::path given = absolute_from_environment("XDG_CACHE_HOME"); !given.empty()) return given;
+    const fs::path home = absolute_from_environment("HOME");
+    return home.empty() ? home : home / ".cache";
+}
+
+fs::path closed_cache_home()
+{
+    return closed_home();
+}
+
+CacheHome::CacheHome()
+{
+    const fs::path home = cache_home();
+    const std::string reason = home.empty() ? "neither XDG_CACHE_HOME nor HOME is an absolute path" : why_closed(home);
+    if (!reason.empty()) closed_ = home.empty() ? reason : home.string() + " cannot be written to (" + reason + ")";
+    std::vector<const char*> closed;
+    if (!reason.empty()) closed.push_back("XDG_CACHE_HOME");
+    for (const char* const variable : {"POCL_CACHE_DIR", "MESA_SHADER_CACHE_DIR"}) {
+        const char* const folder = std::getenv(variable);
+        if (folder == nullptr || *folder == 0) continue;
+        const std::string why = why_closed(fs::absolute(folder));
+        if (why.empty()) continue;
+        closed.push_back(variable);
+        if (closed_.empty()) closed_ = std::string(folder) + " cannot be written to (" + why + ")";
+    }
+    if (closed.empty()) return;
+    temporary_ = make_temporary();
+    if (temporary_.empty()) return;
+    if (!reason.empty()) closed_home() = home;
+    runs_programs_ = runs_programs(temporary_);
+    for (const char* const variable : closed)
+        ::setenv(variable, temporary_.c_str(), 1);
+}
+
+CacheHome::~CacheHome()
+{
+    if (temporary_.empty() || keeps_) return;
+    std::error_code ignored; // nothing depends on it
+    fs::remove_all(temporary_, ignored);
+}
+
+std::string CacheHome::note() const
+{
+    if (closed_.empty()) return {};
+    if (temporary_.empty())
+        return closed_ + ", nor can a temporary folder: scenes cannot be built, and OpenCL on a processor cannot "
+                         "compile; set XDG_CACHE_HOME or TMPDIR to a folder that can be written to";
+    return closed_ + ": built scenes and compiled kernels are in " + temporary_.string() +
+           (keeps_ ? ", which is kept; set XDG_CACHE_HOME to it to find them again"
+                   : " until this run ends; set XDG_CACHE_HOME to a folder that can be written to") +
+           (runs_programs_ ? ""
+                           : ". Programs may not be run from there (noexec), which PoCL needs: set TMPDIR to a "
+                             "folder from which they may");
+}
+
+} // namespace tetrace

@@ -1,0 +1,121 @@
+// The program as containers run it: as a user without a home, on a read-only file system, with few processors and
+// little memory.
+#include "tests/support/program_fixture.h"
+
+#include <unistd.h>
+
+using namespace tetrace::test;
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* one_row = " --scene cubes --resolution 4 --layout tet80 --size 16 --views 0";
+
+class Containers : public ProgramTest {
+protected:
+    void SetUp() override
+    {
+        fs::permissions(folder_.path(), fs::perms(0755));
+        fs::create_directories(temporary_);
+        fs::permissions(temporary_, fs::perms(0777));
+    }
+    void TearDown() override { std::system(fmt::format("rm -rf '{}'", temporary_.string()).c_str()); }
+
+    /// A shell command with the program's arguments, without the variables that name caches.
+    [[nodiscard]] Ended run_by(const std::string& command, const std::string& arguments) const
+    {
+        const int status = std::system(
+            fmt::format("cd '{0}' && env -u XDG_CACHE_HOME -u POCL_CACHE_DIR -u MESA_SHADER_CACHE_DIR {1} '{2}' {3} "
+                        "> stdout 2> stderr",
+                        folder_.path().string(), command, TETRACE_PROGRAM, arguments)
+                .c_str());
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder_ / "stdout"),
+                read_text(folder_ / "stderr")};
+    }
+    [[nodiscard]] Ended run_as_nobody(const std::string& variables, const std::string& arguments) const
+    {
+        return run_by(fmt::format("TMPDIR='{}' {} {}", temporary_.string(), variables, nobody()), arguments);
+    }
+    [[nodiscard]] static std::string nobody()
+    {
+        return ::getuid() == 0 ? "setpriv --reuid=65534 --regid=65534 --clear-groups" : "";
+    }
+    [[nodiscard]] bool may_run_as_nobody() const { return run_as_nobody("", "--version").code == 0; }
+    /// Whether this machine has a driver of OpenCL on the processor.
+    [[nodiscard]] bool has_opencl()
+    {
+        return contains(run("check --backend opencl" + std::string(one_row)).out, "bit-exact");
+    }
+    [[nodiscard]] std::vector<fs::path> left() const
+    {
+        std::vector<fs::path> paths;
+        for (const auto& entry : fs::directory_iterator(temporary_))
+            paths.push_back(entry.path());
+        return paths;
+    }
+
+    fs::path temporary_ = folder_ / "temporary";
+};
+
+} // namespace
+
+TEST_F(Containers, user_without_a_home_has_every_device_and_leaves_nothing)
+{
+    if (!may_run_as_nobody()) GTEST_SKIP() << "no user but root may run the program here";
+    const bool opencl = has_opencl();
+    const Ended ended = run_as_nobody("HOME=/nonexistent", "check" + std::string(one_row));
+    EXPECT_EQ(ended.code, 0) << ended.errors;
+    EXPECT_TRUE(contains(ended.errors, "/nonexistent/.cache cannot be written to (")) << ended.errors;
+    EXPECT_TRUE(contains(ended.errors, temporary_.string() + "/tetrace-cache-")) << ended.errors;
+    EXPECT_TRUE(contains(ended.errors, " until this run ends")) << ended.errors;
+    EXPECT_EQ(bool(contains(ended.out, "  opencl ")), opencl) << ended.out;
+    EXPECT_EQ(left(), std::vector<fs::path>{});
+    EXPECT_EQ(run_as_nobody("HOME=", "check --backend openmp" + std::string(one_row)).code, 0);
+}
+
+TEST_F(Containers, scene_built_without_a_home_is_kept_in_a_folder_that_is_named)
+{
+    if (!may_run_as_nobody()) GTEST_SKIP() << "no user but root may run the program here";
+    const std::string build = "build --scene terrain@500 --size 16 --views 0";
+    const Ended ended = run_as_nobody("HOME=/nonexistent", build);
+    if (ended.code == 3) GTEST_SKIP() << "the builder was not built";
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    ASSERT_EQ(left().size(), 1u);
+    const std::string kept = left().front().string();
+    EXPECT_TRUE(contains(ended.errors, kept + ", which is kept; set XDG_CACHE_HOME to it")) << ended.errors;
+    const Ended again = run_as_nobody("XDG_CACHE_HOME=" + kept, build + " --format csv");
+    EXPECT_EQ(again.code, 0) << again.errors;
+    EXPECT_TRUE(contains(again.out, ",yes,")) << again.out;
+    EXPECT_EQ(again.errors.find("cannot be written"), std::string::npos);
+}
+
+TEST_F(Containers, scenes_of_a_cache_that_may_only_be_read_are_read)
+{
+    if (!may_run_as_nobody()) GTEST_SKIP() << "no user but root may run the program here";
+    const std::string build = "build --scene terrain@500 --size 16 --views 0 --format csv";
+    const Ended built = run(build);
+    if (built.code == 3) GTEST_SKIP() << "the builder was not built";
+    ASSERT_EQ(built.code, 0) << built.errors;
+    const std::string closed = folder_ / "cache";
+    for (const fs::path& folder : {fs::path(closed), fs::path(closed) / "tetrace"})
+        fs::permissions(folder, fs::perms(0555));
+    const Ended ended = run_as_nobody("XDG_CACHE_HOME=" + closed, build);
+    EXPECT_EQ(ended.code, 0) << ended.errors;
+    EXPECT_TRUE(contains(ended.errors, closed + " cannot be written to (Permission denied)")) << ended.errors;
+    EXPECT_TRUE(contains(ended.out, ",yes,")) << "the scene was built again: " << ended.out;
+}
+
+TEST_F(Containers, read_only_file_system_has_every_device)
+{
+    write_file(folder_ / "script",
+               "mount --make-rprivate / && mount -t tmpfs none /dev/shm && mount -o remount,ro,bind / || exit 77\n"
+               "touch here 2> /dev/null && exit 77\nexec \"$@\"\n");
+    write_file(folder_ / "stdout", ""), write_file(folder_ / "stderr", "");
+    const Ended ended = run_by("HOME=/nonexistent unshare -m sh ./script " + nobody(), "check" + std::string(one_row));
+    if (ended.code == 77 || contains(ended.errors, "unshare"))
+        GTEST_SKIP() << "this user may not make a file system read-only: " << ended.errors;
+    EXPECT_EQ(ended.code, 0) << ended.errors;
+    EXPECT_TRUE(contains(ended.errors, "/nonexistent/.cache cannot be written to (")) << ended.errors;
+    EXPECT_EQ(bool(contains(ended.out, "  opencl ")), has_opencl()) << ended.out;
+}
