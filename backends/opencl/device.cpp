@@ -1,6 +1,7 @@
 #include "backends/opencl/device.h"
 
 #include "backends/opencl/errors.h"
+#include "backends/opencl/loader.h"
 #include "core/device/device_facts.h"
 #include "core/device/launch.h"
 #include "kernels/layouts/layout.h"
@@ -172,6 +173,16 @@ std::vector<FoundDevice> devices_of(const cl::Platform& platform)
     return devices;
 }
 
+/// Whether two platforms are one driver that is installed twice: the same devices in the same order. Devices of one
+/// platform are never taken for each other: two of one model may have neither UUID nor PCI address.
+bool is_same_list(const std::vector<FoundDevice>& a, const std::vector<FoundDevice>& b)
+{
+    return std::ranges::equal(a, b, [](const FoundDevice& one, const FoundDevice& other) {
+        return one.build_key == other.build_key && is_same_device(one.facts, other.facts) &&
+               one.facts.reason == other.facts.reason;
+    });
+}
+
 } // namespace
 
 std::string implementation_of(std::string_view platform_name, std::string_view driver_version,
@@ -189,6 +200,7 @@ std::string implementation_of(std::string_view platform_name, std::string_view d
 std::vector<FoundDevice> find_devices()
 {
     std::vector<cl::Platform> platforms;
+    if (!why_no_loader().empty()) return {unusable("none", why_no_loader())};
     std::string why_none = "no platform";
     try {
         cl::Platform::get(&platforms);
@@ -196,9 +208,13 @@ std::vector<FoundDevice> find_devices()
         why_none = error_name(failure.err());
     }
     std::vector<FoundDevice> devices;
-    for (const cl::Platform& platform : platforms)
-        for (FoundDevice& found : devices_of(platform))
-            devices.push_back(std::move(found));
+    std::vector<std::vector<FoundDevice>> listed;
+    for (const cl::Platform& platform : platforms) {
+        auto found = devices_of(platform);
+        if (std::ranges::any_of(listed, [&](const auto& other) { return is_same_list(other, found); })) continue;
+        devices.insert(devices.end(), found.begin(), found.end());
+        listed.push_back(std::move(found));
+    }
     if (devices.empty())
         devices.push_back(unusable("none", "no OpenCL driver was found (" + why_none +
                                                "); install pocl-opencl-icd, which runs on the processor, or the "

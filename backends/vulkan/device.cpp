@@ -158,6 +158,14 @@ FoundDevice found_device(const vk::raii::PhysicalDevice& device)
     return found;
 }
 
+/// Whether the same driver, installed twice, has listed it already. Devices without UUID are all listed.
+bool is_listed(const std::vector<FoundDevice>& found, const FoundDevice& device)
+{
+    return !device.facts.uuid.empty() && std::ranges::any_of(found, [&](const FoundDevice& other) {
+        return is_same_device(other.facts, device.facts);
+    });
+}
+
 } // namespace
 
 std::string implementation_of(std::string_view driver_name, std::string_view driver_info)
@@ -208,7 +216,7 @@ std::vector<FoundDevice> find_devices()
     try {
         std::vector<FoundDevice> found;
         for (const vk::raii::PhysicalDevice& device : instance().handle().enumeratePhysicalDevices())
-            found.push_back(found_device(device));
+            if (FoundDevice next = found_device(device); !is_listed(found, next)) found.push_back(std::move(next));
         if (!found.empty()) return found;
         return {no_device("no Vulkan driver found a device; install the GPU's driver, or mesa-vulkan-drivers")};
     } catch (const Error& error) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <cstdio>
+#include <tuple>
 
 namespace tetrace {
 
@@ -85,6 +86,12 @@ std::string pci_address(unsigned domain, unsigned bus, unsigned device, unsigned
 std::string id_of(const Device& device)
 {
     return !device.uuid.empty() ? device.uuid : !device.pci.empty() ? device.pci : device.name;
+}
+
+bool is_same_device(const Device& a, const Device& b)
+{
+    const auto all = [](const Device& device) { return std::tie(device.name, device.driver, device.uuid, device.pci); };
+    return all(a) == all(b);
 }
 
 std::string implementation_name(std::string_view driver, std::string_view version)

@@ -23,6 +23,10 @@ namespace tetrace {
 /// UUID, else PCI address, else name: Device::id.
 [[nodiscard]] std::string id_of(const Device& device);
 
+/// Whether two descriptions can be of one device through one driver: name, driver, UUID and PCI address are equal. Two
+/// devices of one model without UUID and PCI address are described alike, too.
+[[nodiscard]] bool is_same_device(const Device& a, const Device& b);
+
 /// Device::implementation: a driver's name in lower case, its words joined by dashes, and the first two numbers of its
 /// version; for NVIDIA's driver only the first. "Mesa 22.3.6 (LLVM 15.0.6)" is version 22.3; a text without digits
 /// gives no version. A name without letters and digits is "unknown".

@@ -4,7 +4,6 @@
 #include "core/device/launch.h"
 
 #include <algorithm>
-#include <tuple>
 
 namespace tetrace {
 
@@ -157,11 +156,6 @@ void IsolatedSession::read_output(std::span<std::uint32_t> words)
 
 namespace {
 
-bool is_same(const Device& a, const Device& b)
-{
-    return std::tie(a.name, a.driver, a.uuid, a.pci) == std::tie(b.name, b.driver, b.uuid, b.pci);
-}
-
 Device broken_device(const std::string& reason)
 {
     Device device = unusable_device("none", reason);
@@ -216,7 +210,7 @@ std::shared_ptr<DriverChild> IsolatedBackend::start(std::size_t device) const
     if (child == nullptr || child->is_lost()) {
         child = std::make_shared<DriverChild>(processes_, name());
         const auto now = list(*child);
-        if (device >= now.size() || !is_same(now[device], devices_[device]))
+        if (device >= now.size() || !is_same_device(now[device], devices_[device]))
             throw Error(ErrorKind::driver, name() + ": " + devices_[device].name +
                                                " is no longer where the driver listed it: the device was lost");
     }

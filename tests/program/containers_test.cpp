@@ -119,3 +119,46 @@ TEST_F(Containers, read_only_file_system_has_every_device)
     EXPECT_TRUE(contains(ended.errors, "/nonexistent/.cache cannot be written to (")) << ended.errors;
     EXPECT_EQ(bool(contains(ended.out, "  opencl ")), has_opencl()) << ended.out;
 }
+
+TEST_F(Containers, program_starts_without_the_loaders_of_opencl_and_vulkan)
+{
+    const Ended linked = run(TETRACE_PROGRAM, "/usr/bin/ldd");
+    EXPECT_TRUE(contains(linked.out, "libc.so")) << linked.errors;
+    for (const char* const loader : {"OpenCL", "vulkan"})
+        EXPECT_EQ(linked.out.find(loader), std::string::npos) << linked.out;
+    fs::create_directories(folder_ / "broken");
+    for (const char* const name : {"libOpenCL.so.1", "libvulkan.so.1", "libvulkan.so"})
+        write_file(folder_ / "broken" / name, std::string(200, 'x'));
+    const std::string broken = fmt::format("LD_LIBRARY_PATH='{}'", (folder_ / "broken").string());
+    const Ended devices = run_by(broken, "devices --format csv");
+    EXPECT_EQ(devices.code, 0) << devices.errors;
+    for (const char* const part : {"the OpenCL loader cannot be opened", "libOpenCL.so.1: invalid ELF header",
+                                   "the Vulkan loader libvulkan.so.1 cannot be opened"})
+        EXPECT_TRUE(contains(devices.out, part)) << devices.out;
+    const Ended check = run_by(broken, "check" + std::string(one_row));
+    EXPECT_EQ(check.code, 0) << check.errors;
+    EXPECT_TRUE(contains(check.out, "Missing   opencl: no device: the OpenCL loader cannot be opened")) << check.out;
+    EXPECT_EQ(run_by(broken, "check --backend opencl" + std::string(one_row)).code, 3);
+}
+
+TEST_F(Containers, driver_that_is_installed_twice_has_its_devices_once)
+{
+    const auto copy_twice = [&](const char* from, const char* folder) {
+        fs::create_directories(folder_ / folder);
+        std::error_code ignored; // then no driver is installed
+        for (const auto& entry : fs::directory_iterator(from, ignored))
+            for (const char* const name : {"1-", "2-"})
+                fs::copy_file(entry.path(), folder_ / folder / (name + entry.path().filename().string()));
+    };
+    copy_twice("/etc/OpenCL/vendors", "vendors");
+    copy_twice("/usr/share/vulkan/icd.d", "icd.d");
+    std::string icds;
+    for (const auto& entry : fs::directory_iterator(folder_ / "icd.d"))
+        icds += (icds.empty() ? "" : ":") + entry.path().string();
+    const std::string devices = "devices --format csv";
+    const Ended once = run_by("", devices);
+    EXPECT_TRUE(contains(once.out, "opencl,") && contains(once.out, "vulkan,")) << once.out << once.errors;
+    const std::string folders = fmt::format("OCL_ICD_VENDORS='{}' VK_ICD_FILENAMES='{}' VK_DRIVER_FILES='{}'",
+                                            (folder_ / "vendors").string(), icds, icds);
+    EXPECT_EQ(run_by(folders, devices).out, once.out);
+}
