@@ -88,7 +88,7 @@ Ordinal ordinal_of(const Driver& driver, std::size_t index)
 {
     Ordinal ordinal = 0;
     if (const Result result = driver.device_get(&ordinal, static_cast<int>(index)); result != success)
-        throw Error(ErrorKind::internal,
+        throw Error(ErrorKind::driver,
                     "CUDA: asking for device " + std::to_string(index) + ": " + text_of(driver, result));
     return ordinal;
 }

@@ -6,10 +6,10 @@
 namespace tetrace::cuda {
 
 /// The devices that the driver lists, usable or not; one unusable device if there is no driver or no device.
-/// Throws Error{internal} if the driver fails.
+/// Throws Error{driver} if the driver fails.
 [[nodiscard]] std::vector<Device> list_devices(const LoadedDriver& driver, const Programs& programs);
 
-/// The driver's handle of a device, by its index in list_devices(). Throws Error{internal}.
+/// The driver's handle of a device, by its index in list_devices(). Throws Error{driver}.
 [[nodiscard]] Ordinal ordinal_of(const Driver& driver, std::size_t index);
 
 /// 10 * major + minor of a device's compute capability.
@@ -27,7 +27,7 @@ struct OpenDevice {
     int capability;
 
     [[nodiscard]] const Driver& driver() const { return context.driver(); }
-    /// Waits for all work in the stream. Throws Error{internal} if any of it failed.
+    /// Waits for all work in the stream. Throws Error{driver} if any of it failed.
     void synchronize();
     /// Starts a kernel on a line of blocks. parameters: addresses of its arguments.
     void launch(FunctionHandle function, unsigned blocks, unsigned block_threads, std::span<void* const> parameters)

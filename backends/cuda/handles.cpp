@@ -51,7 +51,7 @@ void Context::check(Result result, const std::string& doing)
 {
     if (result == success) return;
     note(result);
-    throw Error(ErrorKind::internal,
+    throw Error(ErrorKind::driver,
                 "CUDA: " + doing + ": " + text_of(driver_, result) +
                     (lost_ ? "; the device's context is lost to all sessions that are open on it" : ""));
 }

@@ -10,7 +10,7 @@
 namespace tetrace::cuda {
 
 /// A device's primary context, retained while this object lives; what is made in it must be destroyed before it.
-/// Every call throws Error{internal} with the driver's name of the error. After some errors (CUDA calls them sticky)
+/// Every call throws Error{driver} with the driver's name of the error. After some errors (CUDA calls them sticky)
 /// the context is unusable for all sessions that share it. The driver destroys it with the last of them, so that the
 /// next session gets a new one. It is not reset before that: sessions that are still open would free memory that
 /// belongs to the new context.
@@ -114,7 +114,7 @@ class Module {
 public:
     /// Throws Error{unsupported} if the driver cannot use the image: it names the driver's error and its log.
     Module(Context& context, std::span<const std::byte> image, const std::string& name);
-    /// Throws Error{internal} if the module lacks the entry.
+    /// Throws Error{driver} if the module lacks the entry.
     [[nodiscard]] FunctionHandle function(const std::string& name) const;
 
 private:

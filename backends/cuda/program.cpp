@@ -78,7 +78,7 @@ void Nvrtc::load()
 void Nvrtc::check(int result, const std::string& doing) const
 {
     if (result == 0) return;
-    throw Error(ErrorKind::internal, "NVRTC: " + doing + ": " + error_text_(result));
+    throw Error(ErrorKind::driver, "NVRTC: " + doing + ": " + error_text_(result));
 }
 
 std::string Nvrtc::version() const

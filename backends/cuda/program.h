@@ -29,7 +29,7 @@ public:
     [[nodiscard]] std::string target(int capability) const;
 
     /// Code, or assembly, for a target. text: ends with a 0. name: in the compiler's messages. options: for example
-    /// "--fmad=false". Throws Error{internal} with the compiler's log.
+    /// "--fmad=false". Throws Error{driver} with the compiler's log.
     [[nodiscard]] std::vector<unsigned char> compile(const char* text, const std::string& name,
                                                      const std::string& target,
                                                      std::span<const std::string> options) const;
@@ -90,7 +90,7 @@ struct LoadedProgram {
 /// device.
 /// capability: the device's, 10 * major + minor. cache: folder for NVRTC's output; empty: it is not kept.
 /// Throws Error{unsupported} if neither is available, naming both versions where the driver is older than the compiler,
-/// Error{internal} where the device is lost or NVRTC fails.
+/// Error{driver} where the device is lost or NVRTC fails.
 [[nodiscard]] LoadedProgram load_program(Context& context, int capability, const Programs& programs,
                                          const ProgramId& id, const std::filesystem::path& cache);
 

@@ -83,7 +83,7 @@ Error to_error(const cl::Error& failure, const Doing& task)
     const std::string what =
         task.doing + " on '" + task.device + "': " + failure.what() + " gave " + error_name(failure.err());
     if (!is_about_memory(failure.err()))
-        return {ErrorKind::internal, what + "; the device's driver failed or the device was lost"};
+        return {ErrorKind::driver, what + "; the device's driver failed or the device was lost"};
     return {ErrorKind::unsupported, what + "; " + std::to_string(task.bytes) + " bytes are needed, the device has " +
                                         std::to_string(task.memory_bytes) +
                                         "; use a smaller scene, layout or image, or fewer rows at a time"};

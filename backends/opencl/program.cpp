@@ -83,9 +83,9 @@ void Program::compile(Context& context, const ProgramId& id, std::string_view so
         try {
             handle_.build({context.device()}, options_.c_str());
         } catch (const cl::BuildError& failure) {
-            throw Error(ErrorKind::internal, "compiling " + id.source + " with '" + options_ + "' on '" +
-                                                 context.facts().name + "': " + error_name(failure.err()) + "\n" +
-                                                 build_log(failure));
+            throw Error(ErrorKind::driver, "compiling " + id.source + " with '" + options_ + "' on '" +
+                                               context.facts().name + "': " + error_name(failure.err()) + "\n" +
+                                               build_log(failure));
         }
     });
 }

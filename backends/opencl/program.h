@@ -25,7 +25,7 @@ struct ProgramId {
 /// A program compiled for a context's device, or taken from a cache.
 class Program {
 public:
-    /// Throws Error{internal} with the compiler's messages if it fails.
+    /// Throws Error{driver} with the compiler's messages if it fails.
     Program(Context& context, const ProgramId& id, const ProgramCache& cache);
 
     [[nodiscard]] const cl::Program& handle() const { return handle_; }

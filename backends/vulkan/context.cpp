@@ -82,7 +82,7 @@ void Context::finish() const
     queue_.submit({}, *fence_);
     const vk::Result result = device_->waitForFences(*fence_, VK_TRUE, std::numeric_limits<std::uint64_t>::max());
     if (result != vk::Result::eSuccess)
-        throw Error(ErrorKind::internal,
+        throw Error(ErrorKind::driver,
                     "waiting for '" + facts().name + "': vkWaitForFences gave " + vk::to_string(result));
     device_->resetFences(*fence_);
 }
@@ -93,8 +93,8 @@ double Context::seconds_of(const vk::raii::QueryPool& times) const
     const auto [result, ticks] = times.getResults<std::uint64_t>(
         0, 2, 2 * word, word, vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
     if (result != vk::Result::eSuccess)
-        throw Error(ErrorKind::internal, "reading timestamps of '" + facts().name + "': vkGetQueryPoolResults gave " +
-                                             vk::to_string(result));
+        throw Error(ErrorKind::driver, "reading timestamps of '" + facts().name + "': vkGetQueryPoolResults gave " +
+                                           vk::to_string(result));
     return static_cast<double>(ticks_between(ticks[0], ticks[1], found_.limits.timestamp_bits)) *
            facts().timer_period_s;
 }

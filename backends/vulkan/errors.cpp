@@ -13,7 +13,7 @@ Error to_error(const vk::SystemError& failure, const Doing& task)
     // The bindings' text is the call and the code: "vk::Queue::submit: ErrorDeviceLost".
     const std::string what = task.doing + " on '" + task.device + "': " + failure.what();
     if (!is_about_memory(static_cast<vk::Result>(failure.code().value())))
-        return {ErrorKind::internal, what + "; the device's driver failed or the device was lost"};
+        return {ErrorKind::driver, what + "; the device's driver failed or the device was lost"};
     return {ErrorKind::unsupported, what + "; " + std::to_string(task.bytes) + " bytes are needed, the device has " +
                                         std::to_string(task.memory_bytes) +
                                         "; use a smaller scene, layout or image, or fewer rows at a time"};

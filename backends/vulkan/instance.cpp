@@ -82,8 +82,8 @@ Instance::Instance() : loader_(open_loader())
         validates_ = validation_is_wanted() && has_validation_layer(*loader_);
         make();
     } catch (const vk::SystemError& failure) {
-        throw Error(ErrorKind::internal, std::string("making a Vulkan instance: ") + failure.what() +
-                                             "; a driver is needed: the GPU's, or the package mesa-vulkan-drivers");
+        throw Error(ErrorKind::driver, std::string("making a Vulkan instance: ") + failure.what() +
+                                           "; a driver is needed: the GPU's, or the package mesa-vulkan-drivers");
     }
 }
 

@@ -25,7 +25,7 @@ class Instance {
 public:
     /// Validation layers, synchronization included, are on in debug builds and if the environment variable
     /// TETRACE_VULKAN_VALIDATION is 1, if they are installed (package vulkan-validationlayers).
-    /// Throws Error{missing} naming the package if the loader is missing, Error{internal} if it fails.
+    /// Throws Error{missing} naming the package if the loader is missing, Error{driver} if it fails.
     Instance();
 
     [[nodiscard]] const vk::raii::Instance& handle() const { return *handle_; }

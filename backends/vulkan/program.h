@@ -46,7 +46,7 @@ struct ProgramId {
 [[nodiscard]] vk::raii::DescriptorSetLayout make_set_layout(const vk::raii::Device& device, const ProgramId& id);
 [[nodiscard]] vk::raii::PipelineLayout make_pipeline_layout(const vk::raii::Device& device, const ProgramId& id,
                                                             const vk::raii::DescriptorSetLayout& set_layout);
-/// id: of a compute shader. info: flags and further structures; stage and layout are set here. Throws Error{internal}
+/// id: of a compute shader. info: flags and further structures; stage and layout are set here. Throws Error{driver}
 /// where id names no program.
 [[nodiscard]] vk::raii::Pipeline compile(const vk::raii::Device& device, const ProgramId& id,
                                          const vk::raii::PipelineLayout& layout,
@@ -56,7 +56,7 @@ struct ProgramId {
 /// A pipeline with its buffers: of a compute shader, or of ray tracing.
 class Program {
 public:
-    /// Throws Error{internal} if the driver cannot compile it.
+    /// Throws Error{driver} if the driver cannot compile it.
     Program(const Context& context, const ProgramId& id, const ProgramCache& cache);
 
     /// Whether the driver did not need to compile; false if it does not say.

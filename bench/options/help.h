@@ -23,7 +23,7 @@ struct VerbHelp {
 /// What the program's exit codes mean.
 inline constexpr std::pair<int, const char*> exit_code_meanings[] = {
     {0, "good"},
-    {1, "a wrong result, a regression, or a driver that crashed or hung"},
+    {1, "a wrong result, a regression, or a driver that failed, crashed or hung"},
     {2, "a command line, a mesh or another input that is not accepted"},
     {3, "something required is missing or not supported here"},
     {4, "an internal error"}};

@@ -79,7 +79,7 @@ Table matrix_table(const std::string& scene, const std::vector<RowRecord>& all)
     const auto devices = names_of(rows, device_label);
     std::vector<Column> columns = {{"row", "row"}};
     for (const std::string& device : devices)
-        columns.push_back({.key = device, .title = device, .coloured = true});
+        columns.push_back({.key = device, .title = device, .coloured = true, .rank = 0});
     Table table(columns);
     for (const std::string& kernel : names_of(rows, kernel_title)) {
         std::vector<Cell> cells = {kernel};
@@ -130,7 +130,10 @@ Table answers_table(const std::string& scene, const std::vector<RowRecord>& all)
 
 Table self_test_table(const std::vector<RowRecord>& rows)
 {
-    Table table({{"label", "device"}, {"name", "name"}, {"type", "type"}, {"self_test", "self-test, exact mode"}});
+    Table table({{"label", "device"},
+                 {"name", "name"},
+                 {"type", "type"},
+                 {.key = "self_test", .title = "self-test, exact mode", .rank = 0}});
     std::vector<std::string> told;
     for (const RowRecord& row : rows) {
         const std::string label = device_label(row.key);

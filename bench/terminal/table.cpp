@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <ranges>
 
 namespace tetrace {
 
@@ -123,6 +124,19 @@ void fold_into(std::vector<Shown>& columns, std::size_t width)
     const std::size_t left = first - std::min(first, all - width);
     for (Lines& cell : columns.front().cells)
         cell = folded(cell.front(), std::max(left, least));
+}
+
+/// Parts that fit into the width, one below the other, each with the first column.
+std::vector<std::vector<Shown>> parts_of(const std::vector<Shown>& columns, std::size_t width)
+{
+    std::vector<std::vector<Shown>> parts;
+    for (const Shown& column : columns | std::views::drop(1)) {
+        if (parts.empty() || width_of_all(parts.back()) + gap.size() + column.width() > width)
+            parts.push_back({columns.front()});
+        parts.back().push_back(column);
+    }
+    if (parts.empty()) parts.push_back(columns);
+    return parts;
 }
 
 /// A line of the table, or the lines of its highest cell.
@@ -257,18 +271,26 @@ std::string Table::text(std::size_t indent, std::size_t width) const
         for (const auto& row : rows_)
             shown.cells.push_back({cell_text(row[c], columns_[c])});
     }
-    if (width > 0) fold_into(columns, width - std::min(width, indent));
     const std::string margin(indent, ' ');
-    const bool any_unit = std::ranges::any_of(columns, [](const Shown& shown) { return !shown.unit.empty(); });
-    std::string result = lines_of(columns, margin, [](const Shown& shown) { return shown.title; });
-    if (any_unit) result += lines_of(columns, margin, [](const Shown& shown) { return Lines{shown.unit}; });
-    for (std::size_t r = 0; r < rows_.size(); ++r) {
-        const auto [first, last] = headings_.equal_range(r);
-        for (auto heading = first; heading != last; ++heading)
-            result += without_trailing_blanks(margin + heading->second);
-        result += lines_of(
-            columns, margin, [r](const Shown& shown) { return shown.cells[r]; }, true);
-    }
+    const auto lines_with = [&](const std::vector<Shown>& part) {
+        std::string lines = lines_of(part, margin, [](const Shown& shown) { return shown.title; });
+        if (std::ranges::any_of(part, [](const Shown& shown) { return !shown.unit.empty(); }))
+            lines += lines_of(part, margin, [](const Shown& shown) { return Lines{shown.unit}; });
+        for (std::size_t r = 0; r < rows_.size(); ++r) {
+            const auto [first, last] = headings_.equal_range(r);
+            for (auto heading = first; heading != last; ++heading)
+                lines += without_trailing_blanks(margin + heading->second);
+            lines += lines_of(
+                part, margin, [r](const Shown& shown) { return shown.cells[r]; }, true);
+        }
+        return lines;
+    };
+    if (width == 0) return lines_with(columns);
+    const std::size_t within = width - std::min(width, indent);
+    fold_into(columns, within);
+    std::string result;
+    for (const auto& part : parts_of(columns, within))
+        result += (result.empty() ? "" : "\n") + lines_with(part);
     return result;
 }
 

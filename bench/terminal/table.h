@@ -54,7 +54,8 @@ public:
     [[nodiscard]] const std::vector<std::vector<Cell>>& rows() const { return rows_; }
 
     /// Lines indented by `indent` blanks: titles, units where a column has one, rows. Columns with only empty cells are
-    /// left out, and so are the dropped() ones.
+    /// left out, and so are the dropped() ones. If those that are always there do not fit next to each other, the table
+    /// is printed in parts, one below the other, each with the first column.
     [[nodiscard]] std::string text(std::size_t indent = 0, std::size_t width = 0) const;
     /// The titles of the columns that do not fit into lines of `width` columns (0: any length), in the table's order:
     /// the first column stays, those of rank 0, and of the others those that still fit, by rank, and among equal ones

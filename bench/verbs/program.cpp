@@ -4,6 +4,7 @@
 #include "bench/terminal/progress.h"
 #include "bench/terminal/text.h"
 #include "bench/verbs/commands.h"
+#include "bench/verbs/process_limits.h"
 #include "bench/verbs/ranks.h"
 #include "core/base/cache_home.h"
 #include "core/base/error.h"
@@ -126,6 +127,7 @@ int run_program(const std::vector<std::string>& arguments)
         if (!arguments.empty() && arguments.front() == null_hardware_word)
             return run_null_hardware({arguments.begin() + 1, arguments.end()});
         const Options options = parse_options(arguments);
+        check_stacks();
         const auto cache = cache_of(options.verb);
         set_isolation(options.isolation, options.driver_limit_s);
         return run_verb_or_rank(options);

@@ -12,7 +12,7 @@ enum class ErrorKind {
     missing,       ///< a required file, program or device is missing
     unsupported,   ///< not possible here: a limit of the device or of the build
     internal,      ///< our own fault
-    driver,        ///< a device's driver ended its process, or never answered
+    driver,        ///< a device's driver failed, ended its process, or never answered
     wrong_result,  ///< a device returned what its kernel cannot have written
     interrupted,   ///< by the user
 };
@@ -27,7 +27,7 @@ private:
     ErrorKind kind_;
 };
 
-/// The program's exit codes: 1 a wrong result or a driver that crashed, 2 usage or bad input, 3 missing, 4 internal; 0
+/// The program's exit codes: 1 a wrong result or a driver that failed, 2 usage or bad input, 3 missing, 4 internal; 0
 /// is good.
 [[nodiscard]] constexpr int exit_code(ErrorKind kind) noexcept
 {

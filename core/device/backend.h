@@ -178,8 +178,8 @@ struct Yardstick {
 };
 
 /// One scene on one device with one kernel. Every call throws Error, and only Error: unsupported where memory or a
-/// limit is too small (reported with both numbers), internal where the device was lost or its driver failed, driver
-/// where that ended its own process or never answered (core/isolation).
+/// limit is too small (reported with both numbers), driver where the device was lost or its driver failed, ended its
+/// own process or never answered (core/isolation).
 class Session {
 public:
     virtual ~Session() = default;
@@ -262,7 +262,7 @@ public:
     [[nodiscard]] virtual bool shows_code() const { return false; }
     /// The device need not be usable: compile_only is enough. kernel: without one, an empty kernel is compiled.
     /// starts_outside: of task trace, no ray starts in a tet. Throws Error{unsupported} if the driver shows nothing of
-    /// its code, Error{internal} if it fails.
+    /// its code, Error{driver} if it fails.
     [[nodiscard]] virtual CompiledCode compiled(std::size_t device, const std::optional<KernelId>& kernel,
                                                 bool starts_outside) const;
     /// Whether run_defect() runs the reduced kernels of core/device/defects.h.

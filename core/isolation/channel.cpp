@@ -121,7 +121,7 @@ Channel::Pair Channel::make_pair()
 {
     std::array<int, 2> ends{};
     if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0)
-        throw Error(ErrorKind::internal, std::string("no socket for a driver's process: ") + std::strerror(errno));
+        throw Error(ErrorKind::driver, std::string("no socket for a driver's process: ") + std::strerror(errno));
     return {Channel(Descriptor(ends[0])), Channel(Descriptor(ends[1]))};
 }
 

@@ -46,7 +46,7 @@ class Channel {
 public:
     explicit Channel(Descriptor socket) : socket_(std::move(socket)) {}
 
-    /// Two connected ends; other programs that are started do not inherit them. Throws Error{internal}.
+    /// Two connected ends; other programs that are started do not inherit them. Throws Error{driver}.
     struct Pair;
     [[nodiscard]] static Pair make_pair();
 

@@ -66,7 +66,7 @@ public:
         pid_t pid = -1;
         if (const int reason = ::posix_spawn(&pid, program.c_str(), &files_, &attributes_, pointers.data(), environ);
             reason != 0)
-            throw Error(ErrorKind::internal, "starting a driver's process: " + program + ": " + std::strerror(reason));
+            throw Error(ErrorKind::driver, "starting a driver's process: " + program + ": " + std::strerror(reason));
         return pid;
     }
 

@@ -40,7 +40,7 @@ struct RemoteScene {
 /// process that started it does, however that ends.
 class DriverChild {
 public:
-    /// Throws Error{internal} if no process can be started.
+    /// Throws Error{driver} if no process can be started.
     DriverChild(const DriverProcesses& processes, const std::string& backend);
     ~DriverChild();
     DriverChild(const DriverChild&) = delete;

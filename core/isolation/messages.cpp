@@ -126,7 +126,7 @@ std::vector<Device> get_devices(ByteReader& from)
         each_text(device, [&](std::string& text) { text = from.get_text(); });
         each_number(device, [&](auto& number) { number = from.get<std::remove_reference_t<decltype(number)>>(); });
         if (static_cast<std::size_t>(device.kind) >= enum_names<DeviceKind>.size())
-            throw Error(ErrorKind::internal,
+            throw Error(ErrorKind::driver,
                         "a message from a driver's process is damaged: its kind of device is unknown");
     }
     return devices;
@@ -196,9 +196,9 @@ void put_exception(ByteWriter& to)
     } catch (const std::bad_alloc&) {
         put_failure(to, Ended::bad_alloc, ErrorKind::unsupported, {});
     } catch (const std::exception& error) {
-        put_failure(to, Ended::other, ErrorKind::internal, error.what());
+        put_failure(to, Ended::other, ErrorKind::driver, error.what());
     } catch (...) {
-        put_failure(to, Ended::other, ErrorKind::internal, "an exception of unknown type");
+        put_failure(to, Ended::other, ErrorKind::driver, "an exception of unknown type");
     }
 }
 
@@ -215,7 +215,7 @@ void get_outcome(ByteReader& from)
     const std::string text = from.get_text();
     if (how == Ended::error) throw Error(kind, text);
     if (how == Ended::bad_alloc) throw std::bad_alloc();
-    throw std::runtime_error(text);
+    throw Error(ErrorKind::driver, text);
 }
 
 } // namespace tetrace

@@ -50,7 +50,7 @@ private:
     std::vector<std::byte> bytes_;
 };
 
-/// Reads what a ByteWriter wrote, in the same order. Throws Error{internal} if fewer bytes are left than are asked
+/// Reads what a ByteWriter wrote, in the same order. Throws Error{driver} if fewer bytes are left than are asked
 /// for.
 class ByteReader {
 public:
@@ -95,7 +95,7 @@ private:
     }
     [[noreturn]] static void reject()
     {
-        throw Error(ErrorKind::internal, "a message from or to a driver's process is damaged: it is too short");
+        throw Error(ErrorKind::driver, "a message from or to a driver's process is damaged: it is too short");
     }
 
     std::vector<std::byte> bytes_;
@@ -151,7 +151,7 @@ void put_exception(ByteWriter& to);
 /// The first part of an answer: that all went well.
 void put_success(ByteWriter& to);
 /// Reads either; throws what the other process threw: Error of the same kind and text, std::bad_alloc, or
-/// std::runtime_error with the text of any other exception.
+/// Error{driver} with the text of any other exception.
 void get_outcome(ByteReader& from);
 
 } // namespace tetrace

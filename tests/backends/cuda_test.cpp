@@ -203,7 +203,7 @@ TEST_F(CudaFailures, of_a_launch_name_the_drivers_error)
 {
     const auto session = backend->open(0, {}, rays.data(), {});
     const std::string error = error_with("launch", [&] { session->launch(job); });
-    EXPECT_TRUE(error.starts_with("internal: ") && contains(error, "CUDA_ERROR_LAUNCH_OUT_OF_RESOURCES")) << error;
+    EXPECT_TRUE(error.starts_with("driver: ") && contains(error, "CUDA_ERROR_LAUNCH_OUT_OF_RESOURCES")) << error;
     EXPECT_EQ(traced(*session, job), openmp_hits(rays, job));
 }
 
@@ -221,9 +221,9 @@ TEST_F(CudaFailures, a_lost_device_is_reported_and_the_next_session_gets_a_new_c
     {
         const auto session = backend->open(0, {}, rays.data(), {});
         const std::string error = error_with("lost", [&] { (void)traced(*session, job); });
-        EXPECT_TRUE(error.starts_with("internal: ") && contains(error, "CUDA_ERROR_LAUNCH_FAILED")) << error;
+        EXPECT_TRUE(error.starts_with("driver: ") && contains(error, "CUDA_ERROR_LAUNCH_FAILED")) << error;
         EXPECT_TRUE(contains(error, "context is lost"));
-        EXPECT_TRUE(error_of([&] { (void)traced(*session, job); }).starts_with("internal: "));
+        EXPECT_TRUE(error_of([&] { (void)traced(*session, job); }).starts_with("driver: "));
         EXPECT_EQ(openmp_hits(rays, job).size(), 400u) << "other rows go on";
     }
     const auto session = backend->open(0, {}, rays.data(), {});
@@ -287,7 +287,7 @@ TEST_F(CudaNvrtc, targets_the_device_or_the_newest_that_is_older)
 TEST_F(CudaNvrtc, shows_its_log_where_a_source_is_wrong)
 {
     const std::string error = error_of([&] { (void)nvrtc.compile("__global__ void f() { g(); }", "f", "sm_90", {}); });
-    EXPECT_TRUE(error.starts_with("internal: ") && contains(error, "\"g\" is undefined")) << error;
+    EXPECT_TRUE(error.starts_with("driver: ") && contains(error, "\"g\" is undefined")) << error;
 }
 
 TEST_F(CudaNvrtc, every_source_is_exact_in_exact_mode_and_contracts_without_its_option)

@@ -119,7 +119,7 @@ TEST(OpenclErrors, name_the_call_the_code_and_the_device)
 {
     const opencl::Doing task{"launching", "a device", 1234, 999};
     const Error lost = opencl::to_error(cl::Error(CL_OUT_OF_RESOURCES, "clFinish"), task);
-    EXPECT_EQ(lost.kind(), ErrorKind::internal);
+    EXPECT_EQ(lost.kind(), ErrorKind::driver);
     EXPECT_TRUE(contains(lost.what(), "launching on 'a device': clFinish gave CL_OUT_OF_RESOURCES"));
     const Error full = opencl::to_error(cl::Error(CL_MEM_OBJECT_ALLOCATION_FAILURE, "clCreateBuffer"), task);
     EXPECT_EQ(full.kind(), ErrorKind::unsupported);

@@ -346,7 +346,7 @@ TEST(VulkanErrors, name_the_call_the_code_and_the_device)
 {
     const vulkan::Doing task{"launching", "a device", 1234, 999};
     const Error lost = vulkan::to_error(vk::DeviceLostError("vk::Queue::submit"), task);
-    EXPECT_EQ(lost.kind(), ErrorKind::internal);
+    EXPECT_EQ(lost.kind(), ErrorKind::driver);
     EXPECT_TRUE(contains(lost.what(), "launching on 'a device': vk::Queue::submit: ErrorDeviceLost")) << lost.what();
     const Error full = vulkan::to_error(vk::OutOfDeviceMemoryError("vk::Device::allocateMemory"), task);
     EXPECT_EQ(full.kind(), ErrorKind::unsupported);

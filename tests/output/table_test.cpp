@@ -72,6 +72,21 @@ TEST(Table, folds_titles_and_then_names_that_are_wider_than_the_terminal)
         << "files and pipes get whole lines";
 }
 
+TEST(Table, columns_that_are_always_there_continue_below)
+{
+    Table table(
+        {{"row", "row"}, {.key = "a", .title = "first", .rank = 0}, {"b", "b"}, {"c", "second", "s", 2, false, 0}});
+    table.add({std::string("one"), std::string("bit-exact"), std::string("x"), std::string("wrong")});
+    EXPECT_EQ(table.text(2, 20), "  row  first\n"
+                                 "  one  bit-exact\n"
+                                 "\n"
+                                 "  row  second\n"
+                                 "       s\n"
+                                 "  one  wrong\n");
+    EXPECT_EQ(table.dropped(2, 20), std::vector<std::string>{"b"});
+    EXPECT_EQ(table.text(2, 60).find("\n\n"), std::string::npos);
+}
+
 TEST(Sheet, is_wrapped_to_a_terminal_and_says_what_it_leaves_out)
 {
     Table table({{"a", "a"}, {"b", "a title that is long"}, {"c", "another title that is long"}});

@@ -162,3 +162,39 @@ TEST_F(Containers, driver_that_is_installed_twice_has_its_devices_once)
                                             (folder_ / "vendors").string(), icds, icds);
     EXPECT_EQ(run_by(folders, devices).out, once.out);
 }
+
+TEST_F(Containers, driver_that_cannot_compile_is_a_failure_of_the_driver)
+{
+    if (!has_opencl()) GTEST_SKIP() << "OpenCL has no device here";
+    write_file(folder_ / "script",
+               "mount --make-rprivate / && mount -o remount,ro,bind / && mount -o remount,ro,bind /dev/shm || exit 77\n"
+               "touch /tmp/here /var/tmp/here /dev/shm/here 2> /dev/null && exit 77\nexec \"$@\"\n");
+    write_file(folder_ / "stdout", ""), write_file(folder_ / "stderr", "");
+    const Ended ended = run_by("HOME=/nonexistent unshare -m sh ./script", "check" + std::string(one_row));
+    if (ended.code == 77 || contains(ended.errors, "unshare"))
+        GTEST_SKIP() << "some folder can be written to: " << ended.errors;
+    EXPECT_TRUE(contains(ended.errors, ", nor can a temporary folder: ")) << ended.errors;
+    // PoCL lists no device if its cache is missing, and one that cannot compile if it is read-only.
+    EXPECT_EQ(ended.code, 0) << ended.errors;
+    EXPECT_TRUE(contains(ended.out, "Missing   opencl: no device: PoCL lists no device")) << ended.out;
+    fs::create_directories(folder_ / "home/.cache/pocl/kcache");
+    const Ended failed = run_by(fmt::format("HOME='{}' unshare -m sh ./script", (folder_ / "home").string()),
+                                "check" + std::string(one_row));
+    EXPECT_EQ(failed.code, 1) << failed.out;
+    EXPECT_TRUE(contains(failed.out, "api:opencl: error: compiling ")) << failed.out;
+}
+
+TEST_F(Containers, stack_that_is_too_small_for_threads_is_refused)
+{
+    for (const char* const size : {"16k", "16", "300 K", "20000B"}) {
+        const Ended ended =
+            run_by(fmt::format("OMP_STACKSIZE='{}'", size), "check --backend openmp" + std::string(one_row));
+        EXPECT_EQ(ended.code, 2) << size;
+        EXPECT_TRUE(contains(ended.errors, fmt::format("tetrace: OMP_STACKSIZE is {}: threads need", size)));
+    }
+    EXPECT_EQ(run_by("OMP_STACKSIZE=512k", "check --backend openmp,cuda-host" + std::string(one_row)).code, 0);
+    const Ended limited =
+        run_by("sh -c 'ulimit -s 128; exec \"$0\" \"$@\"'", "check --backend openmp" + std::string(one_row));
+    EXPECT_EQ(limited.code, 2) << limited.errors;
+    EXPECT_TRUE(contains(limited.errors, "`ulimit -s` is 128 KB")) << limited.errors;
+}

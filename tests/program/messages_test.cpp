@@ -190,3 +190,25 @@ TEST_F(Messages, tables_and_sentences_fit_the_terminal)
         EXPECT_TRUE(contains(terminal.screen(), "Mrays/s")) << terminal.screen();
     }
 }
+
+TEST_F(Messages, verdicts_of_a_check_are_there_on_a_terminal_of_any_width)
+{
+    const ScopedVariable term("TERM", "xterm"), none("NO_COLOR", "1");
+    for (const char* const columns : {"80", "60", "40"}) {
+        const ScopedVariable width("COLUMNS", columns);
+        Terminal terminal;
+        if (terminal.name().empty()) GTEST_SKIP() << "no terminal";
+        run("check --backend openmp,cuda-host,embree --scene cubes --resolution 4 --size 16 --views 0 > " +
+            terminal.name() + " 2> /dev/null #");
+        const std::string screen = terminal.screen();
+        std::istringstream lines(screen);
+        for (std::string line; std::getline(lines, line);) {
+            line.erase(line.find_last_not_of('\r') + 1);
+            EXPECT_LE(line.size(), std::stoul(columns)) << line;
+        }
+        for (const char* const title : {"  openmp", "  cuda-host", "  embree", "  wrong  lost", "  self-test"})
+            EXPECT_TRUE(contains(screen, title)) << screen;
+        const std::size_t left_out = screen.find("Left out in 40 columns: hit hash");
+        EXPECT_EQ(left_out != std::string::npos, std::string(columns) == "40") << screen;
+    }
+}
