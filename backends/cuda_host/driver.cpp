@@ -2,6 +2,7 @@
 
 #include "backends/cuda_host/kernels.h"
 #include "backends/cuda_host/shim.h"
+#include "core/base/control_groups.h"
 
 #include <omp.h>
 #include <unistd.h>
@@ -50,9 +51,15 @@ void* pointer(Address address)
     return reinterpret_cast<void*>(static_cast<std::uintptr_t>(address));
 }
 
+std::size_t bytes_of(int pages)
+{
+    return static_cast<std::size_t>(sysconf(pages)) * static_cast<std::size_t>(sysconf(_SC_PAGE_SIZE));
+}
+
 std::size_t memory_bytes()
 {
-    return static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::size_t>(sysconf(_SC_PAGE_SIZE));
+    const std::size_t bytes = bytes_of(_SC_PHYS_PAGES);
+    return std::min(bytes, ControlGroups().memory_bytes().value_or(bytes));
 }
 
 // The driver itself and its device
@@ -195,14 +202,15 @@ Result blocks_per_multiprocessor(int* blocks, FunctionHandle, int, std::size_t)
 Result memory_info(std::size_t* free, std::size_t* total)
 {
     *total = memory_bytes();
-    *free = static_cast<std::size_t>(sysconf(_SC_AVPHYS_PAGES)) * static_cast<std::size_t>(sysconf(_SC_PAGE_SIZE));
+    *free = bytes_of(_SC_AVPHYS_PAGES);
+    *free = std::min(*free, ControlGroups().free_memory_bytes().value_or(*free));
     return success;
 }
 
 Result memory_allocate(Address* address, std::size_t bytes)
 {
     if (bytes == 0) return error_invalid_value;
-    if (bytes > memory_bytes()) return error_out_of_memory;
+    if (bytes > memory_bytes() || !fits_in_memory(bytes)) return error_out_of_memory;
     const std::size_t whole = (bytes + device_alignment - 1) / device_alignment * device_alignment;
     void* memory = std::aligned_alloc(device_alignment, whole);
     if (memory == nullptr) return error_out_of_memory;

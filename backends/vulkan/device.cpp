@@ -69,6 +69,16 @@ void find_queue(const vk::raii::PhysicalDevice& device, Limits& limits)
         }
 }
 
+/// As many as there are CPUs, or fewer by its own variable.
+unsigned lavapipe_threads()
+{
+    const unsigned all = std::max(1u, std::thread::hardware_concurrency());
+    const char* const text = std::getenv("LP_NUM_THREADS");
+    unsigned number = 0;
+    if (text != nullptr) std::from_chars(text, text + std::strlen(text), number);
+    return number > 0 ? std::min(number, all) : all;
+}
+
 Limits limits_of(const vk::raii::PhysicalDevice& device)
 {
     // Devices of 1.0 do not know the later structures.
@@ -126,7 +136,7 @@ FoundDevice found_device(const vk::raii::PhysicalDevice& device)
     facts.name = text_of(properties.deviceName);
     const bool is_emulated = properties.deviceType == vk::PhysicalDeviceType::eCpu;
     facts.kind = is_emulated ? DeviceKind::emulated : DeviceKind::gpu;
-    if (is_emulated) facts.threads = std::max(1u, std::thread::hardware_concurrency());
+    if (is_emulated) facts.threads = lavapipe_threads();
     // lavapipe 22.3 reads a storage buffer lane after lane, through memory: 3.5 times slower on this walk, and 7 times
     // where quads are read (results/texels.md).
     found.reads_texels = is_emulated;

@@ -109,8 +109,8 @@ std::optional<ProcessTimes> process_times(std::string_view text)
 }
 
 LoadMeter::LoadMeter()
-    : processors_(allowed_processors()), busy_s_(busy_seconds(processors_)), own_s_(own_seconds()),
-      start_s_(now_seconds())
+    : processors_(allowed_processors()), busy_s_(busy_seconds(processors_)),
+      throttling_(ControlGroups().throttling().value_or(Throttling())), own_s_(own_seconds()), start_s_(now_seconds())
 {
 }
 
@@ -121,6 +121,8 @@ std::optional<MachineLoad> LoadMeter::load() const
     MachineLoad load;
     if (!busy_s_ || !busy_s || wall_s <= 0 || ::getloadavg(&load.average, 1) != 1) return std::nullopt;
     load.others = std::max(0.0, (*busy_s - *busy_s_) - (own_seconds() - own_s_)) / wall_s;
+    const Throttling now = ControlGroups().throttling().value_or(throttling_);
+    load.throttling = {now.periods - throttling_.periods, now.seconds - throttling_.seconds};
     load.processors = static_cast<unsigned>(processors_.size());
     return load;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/base/control_groups.h"
+
 #include <cstdint>
 #include <optional>
 #include <set>
@@ -11,7 +13,8 @@ namespace tetrace {
 struct MachineLoad {
     double others = 0;  ///< processors' worth of work of other processes, and of the host that a virtual machine is on
     double average = 0; ///< the system's load average over the last minute, our own work included
-    unsigned processors = 1; ///< that this process may use
+    unsigned processors = 1;    ///< that this process may use
+    Throttling throttling = {}; ///< by the CPU quota of a container
 
     /// Whether the others took too little to move the rates: at most a tenth of a processor for each.
     [[nodiscard]] bool is_quiet() const { return others <= 0.1 * processors; }
@@ -43,6 +46,7 @@ public:
 private:
     std::set<unsigned> processors_;
     std::optional<double> busy_s_;
+    Throttling throttling_;
     double own_s_ = 0, start_s_ = 0;
 };
 

@@ -63,8 +63,10 @@ void MachineWatch::restore(const nlohmann::json& readings)
         }
     if (!readings.contains("load")) return;
     const nlohmann::json& load = readings["load"];
-    const MachineLoad read{amount_from(load.at("others")), amount_from(load.at("average")),
-                           count_from<unsigned>(load.at("processors"))};
+    MachineLoad read{amount_from(load.at("others")), amount_from(load.at("average")),
+                     count_from<unsigned>(load.at("processors"))};
+    if (load.contains("throttled_periods"))
+        read.throttling = {count_from<std::uint64_t>(load["throttled_periods"]), amount_from(load.at("throttled_s"))};
     stretches_.push_back({read, positive_from(load.at("seconds"))});
 }
 
@@ -83,6 +85,10 @@ nlohmann::json MachineWatch::new_readings(bool with_load)
     if (!load || seconds <= 0 || (!with_load && seconds < shortest_stretch_s)) return found;
     found["load"] = {
         {"others", load->others}, {"average", load->average}, {"processors", load->processors}, {"seconds", seconds}};
+    if (load->throttling.periods > 0) {
+        found["load"]["throttled_periods"] = load->throttling.periods;
+        found["load"]["throttled_s"] = load->throttling.seconds;
+    }
     stretches_.push_back({*load, seconds});
     begin_load();
     return found;
@@ -98,10 +104,13 @@ std::optional<MachineLoad> MachineWatch::load() const
 {
     if (stretches_.empty()) return std::nullopt;
     MachineLoad mean = stretches_.back().load;
+    mean.throttling = {};
     double work = 0, seconds = 0;
     for (const Stretch& stretch : stretches_) {
         work += stretch.load.others * stretch.seconds;
         seconds += stretch.seconds;
+        mean.throttling.periods += stretch.load.throttling.periods;
+        mean.throttling.seconds += stretch.load.throttling.seconds;
     }
     mean.others = work / seconds;
     return mean;

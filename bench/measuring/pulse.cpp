@@ -40,6 +40,15 @@ double Pulse::ratio_beside(double begin_s, double end_s) const
 Pulses::Pulses(Work host, Clock clock) : clock_(std::move(clock))
 {
     takers_.push_back({{"host", {}}, std::move(host)});
+    const ControlGroups groups;
+    if (groups.throttling())
+        set_throttled_periods([groups] { return groups.throttling().value_or(Throttling()).periods; });
+}
+
+void Pulses::set_throttled_periods(std::function<std::uint64_t()> periods)
+{
+    throttled_periods_ = std::move(periods);
+    throttled_ = throttled_periods_();
 }
 
 Pulses::Pulses(const std::vector<RowRun*>& rows, Work host, Clock clock) : Pulses(std::move(host), std::move(clock))
@@ -103,6 +112,7 @@ void Pulses::take()
         if (!taker.ended) taker.pulse.readings.push_back({at_s, *seconds});
     }
     last_s_ = clock_();
+    if (throttled_periods_) throttled_ = throttled_periods_();
 }
 
 void Pulses::take_if_due()
@@ -113,7 +123,12 @@ void Pulses::take_if_due()
 void Pulses::sampled(const RowRun& row, double begin_s, double end_s)
 {
     const auto watched = rows_.find(&row);
-    if (watched != rows_.end()) watched->second.intervals.emplace_back(begin_s, end_s);
+    if (watched == rows_.end()) return;
+    watched->second.intervals.emplace_back(begin_s, end_s);
+    if (!throttled_periods_) return;
+    const std::uint64_t now = throttled_periods_();
+    watched->second.throttled += now - std::min(now, throttled_);
+    throttled_ = now;
 }
 
 void Pulses::judge_rows(std::vector<RowRun>& rows, const std::optional<MachineLoad>& load) const
@@ -129,6 +144,9 @@ void Pulses::judge_rows(std::vector<RowRun>& rows, const std::optional<MachineLo
         if (!ratios.empty()) row.pulse_ratio = quantile(ratios, 0.5);
         const bool feels_load = load && runs_on_host(row.device);
         row.disturbance = disturbance_text(row.pulse_ratio, feels_load ? &*load : nullptr);
+        if (samples->second.throttled > 0 && runs_on_host(row.device))
+            append_item(row.disturbance, "; ",
+                        fmt::format("the container's CPU quota stopped it {} times", samples->second.throttled));
         if (row.readings && row.readings->throttled() > 0)
             append_item(row.disturbance, "; ",
                         fmt::format("its GPU was throttled in {} of {} samples ({})", row.readings->throttled(),

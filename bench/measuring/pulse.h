@@ -43,6 +43,8 @@ public:
     Pulses(Work host, Clock clock);
     /// rows: watched, each GPU by the last view of its first row.
     Pulses(const std::vector<RowRun*>& rows, Work host, Clock clock);
+    /// periods: how many a CPU quota has stopped this process in so far; tests pass their own.
+    void set_throttled_periods(std::function<std::uint64_t()> periods);
     Pulses(const Pulses&) = delete;
     Pulses& operator=(const Pulses&) = delete;
 
@@ -76,12 +78,15 @@ private:
     struct Samples {
         std::size_t taker;
         std::vector<std::pair<double, double>> intervals;
+        std::uint64_t throttled = 0; ///< periods in which a CPU quota stopped the process
     };
 
     Clock clock_;
     std::vector<Taker> takers_;
     std::map<const RowRun*, Samples> rows_;
-    std::optional<double> last_s_; ///< of the last reading; empty: one is due
+    std::function<std::uint64_t()> throttled_periods_; ///< null without a quota
+    std::uint64_t throttled_ = 0;                      ///< counted so far
+    std::optional<double> last_s_;                     ///< of the last reading; empty: one is due
 };
 
 /// The calibration work of the host: openmp::pulse_s() by this many threads.

@@ -1,6 +1,7 @@
 #include "bench/options/identity.h"
 
 #include "bench/options/commit.h"
+#include "core/base/control_groups.h"
 #include "core/base/printable.h"
 
 #include <fmt/chrono.h>
@@ -55,8 +56,22 @@ BuildIdentity build_identity()
             TETRACE_LIBRARIES};
 }
 
+namespace {
+
+/// ", limited to 1.5 CPUs and 512 MB"; empty if there are no limits.
+std::string limits_text(const ControlGroups& groups)
+{
+    std::vector<std::string> limits;
+    if (const auto cpus = groups.cpus()) limits.push_back(fmt::format("{:.3g} CPUs", *cpus));
+    if (const auto bytes = groups.memory_bytes()) limits.push_back(fmt::format("{} MB", *bytes / 1'000'000));
+    return limits.empty() ? "" : fmt::format(", limited to {}", fmt::join(limits, " and "));
+}
+
+} // namespace
+
 HostIdentity host_identity()
 {
+    const ControlGroups groups;
     utsname system{};
     uname(&system);
     cpu_set_t allowed;
@@ -66,9 +81,9 @@ HostIdentity host_identity()
             processor_number("cpu family"),
             processor_number("model"),
             processor_number("stepping"),
-            printable_line(fmt::format("{}, {} {}", value_in("/etc/os-release", "PRETTY_NAME=", '='), system.sysname,
-                                       system.release)),
-            known ? static_cast<unsigned>(CPU_COUNT(&allowed)) : 1u};
+            printable_line(fmt::format("{}, {} {}{}", value_in("/etc/os-release", "PRETTY_NAME=", '='), system.sysname,
+                                       system.release, limits_text(groups))),
+            std::min(known ? static_cast<unsigned>(CPU_COUNT(&allowed)) : 1u, groups.threads().value_or(~0u))};
 }
 
 std::string utc_now()

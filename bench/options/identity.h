@@ -24,8 +24,8 @@ struct HostIdentity {
     std::string cpu;
     std::optional<unsigned> family, model, stepping; ///< of the CPU, if the system reports them: names may say no
                                                      ///< more than "AMD EPYC"
-    std::string system;                              ///< the distribution's name and the kernel's release
-    unsigned threads = 1;                            ///< that this process may use
+    std::string system;   ///< the distribution's name, the kernel's release, a container's limits
+    unsigned threads = 1; ///< that this process may use, of a quota whole ones
 };
 [[nodiscard]] HostIdentity host_identity();
 

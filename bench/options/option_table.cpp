@@ -138,8 +138,9 @@ std::vector<OptionRow> scene_options()
          "accepts. Default: half of --time-limit.",
          building, false, set_seconds("--optimise-time", &Options::optimise_s)},
         {"Scenes", "--memory-limit", "SIZE",
-         "Memory that the scene builder may use: bytes, or a number followed by K, M, G or T. Default: 8G.", building,
-         false, set_bytes("--memory-limit", &Options::memory_limit_bytes)},
+         "Memory that the scene builder may use: bytes, or a number followed by K, M, G or T. "
+         "Default: 8G, or what is left of a container's limit.",
+         building, false, set_bytes("--memory-limit", &Options::memory_limit_bytes)},
         {"Scenes", "--clear", "", "Empty the cache of built scenes.", bit(Verb::scenes), false, set(&Options::clear)},
     };
 }

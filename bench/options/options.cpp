@@ -4,6 +4,7 @@
 #include "bench/options/option_table.h"
 #include "bench/options/option_values.h"
 
+#include "core/base/control_groups.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <fmt/format.h>
@@ -338,6 +339,17 @@ Options parse_options(const std::vector<std::string>& arguments)
                                               first, did_you_mean(first, names_of_verbs()), join_names(all_verbs())));
 }
 
+namespace {
+
+/// Of the scene builder: what is left of a container's limit, so that it ends with a message and is not killed.
+std::uint64_t usual_memory_limit()
+{
+    const std::uint64_t usual = BuildOptions{}.memory_limit_bytes;
+    return std::min(usual, ControlGroups().free_memory_bytes().value_or(usual));
+}
+
+} // namespace
+
 std::vector<SceneRequest> scene_requests(const Options& options)
 {
     BuildOptions build = default_build(options.tets.front());
@@ -353,7 +365,7 @@ std::vector<SceneRequest> scene_requests(const Options& options)
     build.mesh_will_do =
         is_rivals || options.verb == Verb::bench || options.verb == Verb::check || options.verb == Verb::render;
     build.keep_unfinished = options.verb == Verb::build;
-    build.memory_limit_bytes = options.memory_limit_bytes;
+    build.memory_limit_bytes = options.memory_limit_bytes != 0 ? options.memory_limit_bytes : usual_memory_limit();
     std::vector<SceneRequest> requests;
     for (const std::string& name : options.scenes.empty() ? default_scenes() : options.scenes)
         requests.push_back({name, build});

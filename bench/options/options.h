@@ -111,7 +111,7 @@ struct Options {
     std::uint32_t resolution = BuildOptions{}.resolution;
     double time_limit_s = BuildOptions{}.time_limit_s;
     double optimise_s = BuildOptions{}.optimise_s;
-    std::uint64_t memory_limit_bytes = BuildOptions{}.memory_limit_bytes;
+    std::uint64_t memory_limit_bytes = 0; ///< 0: the usual limit, less in a container with less
 
     std::vector<Structure> structures;
     std::vector<Method> methods;

@@ -113,8 +113,12 @@ std::string apis_text(const BenchResult& result)
 std::string load_text(const std::optional<MachineLoad>& load)
 {
     if (!load) return "the load while measuring is not known";
-    return fmt::format("other processes used {:.2f} of {} CPUs while measuring, load average {:.1f}", load->others,
-                       load->processors, load->average);
+    std::string text = fmt::format("other processes used {:.2f} of {} CPUs while measuring, load average {:.1f}",
+                                   load->others, load->processors, load->average);
+    if (load->throttling.periods > 0)
+        text += fmt::format("; the container's CPU quota stopped this run {} times, for {:.1f} s",
+                            load->throttling.periods, load->throttling.seconds);
+    return text;
 }
 
 std::string pulses_text(const std::vector<Pulse>& pulses)

@@ -152,6 +152,10 @@ void set_steadiness(json& section, const std::optional<MachineLoad>& load, const
 {
     if (load)
         section["load"] = {{"others", load->others}, {"average", load->average}, {"processors", load->processors}};
+    if (load && load->throttling.periods > 0) {
+        section["load"]["throttled_periods"] = load->throttling.periods;
+        section["load"]["throttled_s"] = load->throttling.seconds;
+    }
     for (const Pulse& pulse : pulses) {
         json readings = json::array();
         for (const Pulse::Reading& reading : pulse.readings)

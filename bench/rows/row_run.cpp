@@ -1,6 +1,7 @@
 #include "bench/rows/row_run.h"
 
 #include "bench/rows/physical_device.h"
+#include "core/base/control_groups.h"
 #include "core/base/printable.h"
 #include "core/device/session.h"
 #include "scenes/cache.h"
@@ -135,7 +136,8 @@ void guarded(RowRun& row, const std::function<void()>& work)
         else
             row.outcome = Failed{error.kind(), printable_text(error.what())};
     } catch (const std::bad_alloc&) {
-        row.outcome = Skipped{Status::unsupported, "out of memory; use a smaller --size or fewer rows"};
+        row.outcome = Skipped{Status::unsupported,
+                              "out of memory" + memory_limit_text() + "; use a smaller --size or fewer rows"};
     } catch (const std::exception& error) {
         row.outcome = Failed{ErrorKind::internal, printable_text(error.what())};
     }

@@ -3,6 +3,7 @@
 #include "bench/rows/ray_store.h"
 #include "core/base/hash.h"
 #include "core/base/stopwatch.h"
+#include "core/device/host.h"
 #include "core/device/launch.h"
 
 #include <algorithm>
@@ -95,7 +96,10 @@ std::size_t last_view_with_rays(const RowRun& row)
 std::uint64_t batch_limit(const RowRun& row, std::size_t rows)
 {
     std::uint64_t limit = max_batch_bytes;
-    if (row.device.memory_bytes != 0) limit = std::min(limit, row.device.memory_bytes / 3 / rows);
+    std::uint64_t memory = row.device.memory_bytes;
+    if (row.device.kind == DeviceKind::emulated) // its driver does not know a container's limit
+        memory = std::min(memory, host_device().memory_bytes);
+    if (memory != 0) limit = std::min(limit, memory / 3 / rows);
     return row.max_buffer_bytes == 0 ? limit : std::min(limit, row.max_buffer_bytes);
 }
 

@@ -108,7 +108,10 @@ std::optional<MachineLoad> load_of(const ResultValue& section)
 {
     const auto load = section.find("load");
     if (!load) return std::nullopt;
-    return MachineLoad{load->at("others").number(), load->at("average").number(), small_count(load->at("processors"))};
+    MachineLoad read{load->at("others").number(), load->at("average").number(), small_count(load->at("processors"))};
+    read_member(read.throttling.periods, *load, "throttled_periods");
+    read_member(read.throttling.seconds, *load, "throttled_s");
+    return read;
 }
 
 std::vector<Pulse> pulses_of(const ResultValue& section)

@@ -132,7 +132,7 @@ std::string heading(const std::vector<const ApiDevice*>& apis)
         add_first("PCI ", &Device::pci);
     }
     if (apis.front()->device.memory_bytes > 0) parts.push_back(size_text(apis.front()->device.memory_bytes));
-    if (is_host) parts.push_back(fmt::format("{} threads for this process", host_identity().threads));
+    if (is_host) parts.push_back(counted(host_identity().threads, "thread", "threads") + " for this process");
     return joined(parts) + "\n";
 }
 

@@ -1,8 +1,10 @@
 #include "bench/verbs/process_limits.h"
 
+#include "core/base/control_groups.h"
 #include "core/base/error.h"
 
 #include <fmt/format.h>
+#include <omp.h>
 #include <sys/resource.h>
 
 #include <cctype>
@@ -54,6 +56,17 @@ void check_stacks()
         throw Error(ErrorKind::usage, fmt::format("`ulimit -s` is {} KB: threads need a stack of at least {} KB; raise "
                                                   "it with `ulimit -s {}` or more",
                                                   limit.rlim_cur >> 10, min_stack_bytes >> 10, min_stack_bytes >> 10));
+}
+
+void limit_threads()
+{
+    const auto threads = ControlGroups().threads();
+    const int all = omp_get_max_threads();
+    if (!threads || std::getenv("OMP_NUM_THREADS") != nullptr || all <= static_cast<int>(*threads)) return;
+    omp_set_num_threads(static_cast<int>(*threads));
+    const std::string text = std::to_string(*threads);
+    for (const char* const variable : {"OMP_NUM_THREADS", "LP_NUM_THREADS"}) // of the builder, and of lavapipe
+        ::setenv(variable, text.c_str(), 0);
 }
 
 } // namespace tetrace

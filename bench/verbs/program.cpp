@@ -7,6 +7,7 @@
 #include "bench/verbs/process_limits.h"
 #include "bench/verbs/ranks.h"
 #include "core/base/cache_home.h"
+#include "core/base/control_groups.h"
 #include "core/base/error.h"
 #include "core/isolation/driver_server.h"
 #include "core/isolation/isolation.h"
@@ -126,6 +127,7 @@ int run_program(const std::vector<std::string>& arguments)
             return serve_driver({arguments.begin() + 1, arguments.end()}, direct_backends());
         if (!arguments.empty() && arguments.front() == null_hardware_word)
             return run_null_hardware({arguments.begin() + 1, arguments.end()});
+        limit_threads();
         const Options options = parse_options(arguments);
         check_stacks();
         const auto cache = cache_of(options.verb);
@@ -137,7 +139,7 @@ int run_program(const std::vector<std::string>& arguments)
         if (error.kind() == ErrorKind::interrupted && !words.empty()) say(words);
         return exit_code(error.kind());
     } catch (const std::bad_alloc&) {
-        say("tetrace: out of memory; use a smaller --size, fewer scenes or fewer --views");
+        say("tetrace: out of memory" + memory_limit_text() + "; use a smaller --size, fewer scenes or fewer --views");
         return exit_code(ErrorKind::unsupported);
     } catch (const std::exception& error) {
         say(std::string("tetrace: internal error: ") + error.what());

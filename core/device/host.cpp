@@ -1,5 +1,6 @@
 #include "core/device/host.h"
 
+#include "core/base/control_groups.h"
 #include "core/base/printable.h"
 #include "core/base/stopwatch.h"
 #include "core/device/launch.h"
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <cassert>
 #include <fstream>
+#include <new>
 #include <thread>
 
 namespace tetrace {
@@ -32,8 +34,9 @@ Device host_device()
     device.name = processor_name();
     device.kind = DeviceKind::cpu;
     device.id = device.name;
-    device.memory_bytes =
+    const std::uint64_t bytes =
         static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
+    device.memory_bytes = std::min(bytes, ControlGroups().memory_bytes().value_or(bytes));
     device.threads = std::thread::hardware_concurrency();
     return device;
 }
@@ -50,6 +53,8 @@ bool host_has_fused_multiply()
 void HostSession::start(std::span<const TraceJob> jobs)
 {
     const OutputParts parts = output_parts(words_per_ray(task_));
+    if (output_.capacity() < parts.words() && !fits_in_memory(parts.words() * sizeof(output_[0])))
+        throw std::bad_alloc();
     output_.assign(parts.words(), POISON);
     const Stopwatch watch;
     for (std::uint32_t pass = 0; pass < jobs.front().passes; ++pass)

@@ -1,5 +1,6 @@
 #include "core/isolation/channel.h"
 
+#include "core/base/control_groups.h"
 #include "core/base/error.h"
 
 #include <fcntl.h>
@@ -19,9 +20,9 @@ namespace {
 
 [[noreturn]] void fail(std::size_t bytes, int reason)
 {
-    throw Error(ErrorKind::unsupported, "no " + std::to_string(bytes) +
-                                            " bytes of memory to share with a driver's process: " +
-                                            std::strerror(reason) + "; use a smaller --size or fewer rows");
+    throw Error(ErrorKind::unsupported,
+                "no " + std::to_string(bytes) + " bytes of memory to share with a driver's process: " +
+                    std::strerror(reason) + memory_limit_text() + "; use a smaller --size or fewer rows");
 }
 
 } // namespace
@@ -29,6 +30,7 @@ namespace {
 SharedMemory::SharedMemory(std::size_t bytes)
 {
     if (bytes == 0) return;
+    if (!fits_in_memory(bytes)) fail(bytes, ENOMEM);
     file_ = Descriptor(::memfd_create("tetrace", MFD_CLOEXEC | MFD_ALLOW_SEALING));
     if (!file_.open()) fail(bytes, errno);
     // All of it now: memory that is missing later would be a signal instead of an error.

@@ -4,6 +4,7 @@
 #include "core/isolation/messages.h"
 
 #include <csignal>
+#include <fstream>
 #include <map>
 #include <memory>
 #include <sys/prctl.h>
@@ -162,6 +163,8 @@ int serve_driver(const std::vector<std::string>& arguments, const std::vector<Ba
     ::prctl(PR_SET_PDEATHSIG, SIGKILL); // a driver that hangs would not see the socket close
     if (std::to_string(::getppid()) != arguments[1]) return exit_code(ErrorKind::interrupted);
     close_inherited_files();
+    // Where memory is short, the kernel ends this process rather than the one that asks: only its row is lost.
+    if (std::ofstream score("/proc/self/oom_score_adj"); score) score << 1000;
     const Channel channel{Descriptor(served_socket)};
     Server server(*backend);
     while (auto message = channel.receive())

@@ -2,6 +2,7 @@
 // little memory.
 #include "tests/support/program_fixture.h"
 
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 using namespace tetrace::test;
@@ -11,6 +12,35 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* one_row = " --scene cubes --resolution 4 --layout tet80 --size 16 --views 0";
+
+/// Runs the program in a control group of its own, below the group of this process: with a CPU quota or a memory limit.
+/// Exit code 77: the machine does not let it be made.
+constexpr const char* group_script = R"(controller=$1 limit=$2; shift 2
+folder_of() { sed -n "s/^[0-9]*:$1:\(.*\)$/\1/p" /proc/self/cgroup | head -n 1; }
+split=$(sed -n 's/^[0-9]*:\([^:]*\):.*$/\1/p' /proc/self/cgroup | grep -w "$controller")
+if [ -n "$split" ]; then group=/sys/fs/cgroup/$controller$(folder_of "$split")
+else group=/sys/fs/cgroup$(folder_of ''); fi
+group=${group%/}/tetrace-test-$$
+mkdir "$group" 2> /dev/null || exit 77
+if [ -f "$group/cpu.cfs_quota_us" ]; then echo "$limit" > "$group/cpu.cfs_quota_us"
+elif [ -f "$group/memory.limit_in_bytes" ]; then echo "$limit" > "$group/memory.limit_in_bytes"
+elif [ $controller = cpu ] && [ -f "$group/cpu.max" ]; then echo "$limit 100000" > "$group/cpu.max"
+elif [ $controller = memory ] && [ -f "$group/memory.max" ]; then echo "$limit" > "$group/memory.max"
+else rmdir "$group"; exit 77; fi && sh -c 'echo $$ > "$0/cgroup.procs" || exit 77; exec "$@"' "$group" "$@"
+code=$?
+until rmdir "$group" 2> /dev/null; do tries=x$tries; [ $tries = xxxxxxxxxxxxxxxxxxxx ] && break; sleep 0.1; done
+exit $code
+)";
+
+/// With single blanks between words.
+std::string unwrapped(const std::string& text)
+{
+    std::istringstream words(text);
+    std::string line;
+    for (std::string word; words >> word;)
+        line += word + ' ';
+    return line;
+}
 
 class Containers : public ProgramTest {
 protected:
@@ -36,6 +66,14 @@ protected:
     [[nodiscard]] Ended run_as_nobody(const std::string& variables, const std::string& arguments) const
     {
         return run_by(fmt::format("TMPDIR='{}' {} {}", temporary_.string(), variables, nobody()), arguments);
+    }
+    [[nodiscard]] Ended run_in_group(const std::string& controller, std::uint64_t limit,
+                                     const std::string& arguments) const
+    {
+        write_file(folder_ / "in-group", group_script);
+        return run_by(
+            fmt::format("XDG_CACHE_HOME='{}' sh ./in-group {} {}", (folder_ / "cache").string(), controller, limit),
+            arguments);
     }
     [[nodiscard]] static std::string nobody()
     {
@@ -197,4 +235,55 @@ TEST_F(Containers, stack_that_is_too_small_for_threads_is_refused)
         run_by("sh -c 'ulimit -s 128; exec \"$0\" \"$@\"'", "check --backend openmp" + std::string(one_row));
     EXPECT_EQ(limited.code, 2) << limited.errors;
     EXPECT_TRUE(contains(limited.errors, "`ulimit -s` is 128 KB")) << limited.errors;
+}
+
+TEST_F(Containers, cpu_quota_is_the_number_of_threads_and_what_it_stops_is_not_trusted)
+{
+    const Ended devices = run_in_group("cpu", 50'000, "devices");
+    if (devices.code == 77) GTEST_SKIP() << "this machine lets no control group be made";
+    EXPECT_EQ(devices.code, 0) << devices.errors;
+    EXPECT_TRUE(contains(devices.out, "limited to 0.5 CPUs")) << devices.out;
+    EXPECT_TRUE(contains(devices.out, "1 thread for this process")) << devices.out;
+    const std::string bench =
+        "bench --backend openmp --scene cubes --resolution 4 --layout tet80 --views 0 --samples 5 "
+        "--size 512 --sample-time 0.1s --out r.json";
+    const Ended ended = run_in_group("cpu", 50'000, bench);
+    EXPECT_EQ(ended.code, 0) << ended.errors;
+    EXPECT_TRUE(contains(unwrapped(ended.out), "the container's CPU quota stopped this run ")) << ended.out;
+    EXPECT_TRUE(contains(unwrapped(ended.out), "do not trust these rates")) << ended.out;
+    const auto section = nlohmann::json::parse(file("r.json")).at("tetrace");
+    EXPECT_EQ(section.at("threads"), 1);
+    EXPECT_GT(section.at("load").at("throttled_periods"), 0);
+    EXPECT_TRUE(contains(section.at("rows")[0].dump(), "the container's CPU quota stopped it "))
+        << section.at("rows")[0];
+    const Ended shown = run("show r.json");
+    EXPECT_TRUE(contains(unwrapped(shown.out), "the container's CPU quota stopped this run "))
+        << shown.out << shown.errors;
+    const Ended asked = run_in_group("cpu", 50'000, bench + " --threads 2");
+    EXPECT_EQ(nlohmann::json::parse(file("r.json")).at("tetrace").at("threads"), 2) << asked.errors;
+}
+
+TEST_F(Containers, memory_limit_is_an_error_of_the_row_before_the_kernel_kills_the_process)
+{
+    constexpr std::uint64_t limit = 300'000'000;
+    const std::string check = "check --backend openmp --scene cubes --resolution 4 --layout tet80 --views 0 --size ";
+    const Ended small = run_in_group("memory", limit, check + "64");
+    if (small.code == 77) GTEST_SKIP() << "this machine lets no control group be made";
+    EXPECT_EQ(small.code, 0) << small.errors;
+    const Ended large = run_in_group("memory", limit, check + "4096");
+    EXPECT_EQ(large.code, 3) << large.out << large.errors;
+    EXPECT_TRUE(contains(large.out + large.errors, "out of memory (this container may use "))
+        << large.out << large.errors;
+    const Ended devices = run_in_group("memory", limit, "devices --format csv");
+    EXPECT_TRUE(contains(devices.out, ",299999232,") || contains(devices.out, ",300000000,")) << devices.out;
+}
+
+TEST_F(Containers, scene_builder_ends_with_a_message_in_a_container_with_little_memory)
+{
+    const Ended ended = run_in_group("memory", 120'000'000, "build --scene terrain@200000 --size 16 --views 0");
+    if (ended.code == 77) GTEST_SKIP() << "this machine lets no control group be made";
+    if (contains(ended.errors, "was not built")) GTEST_SKIP() << "the builder was not built";
+    EXPECT_NE(ended.code, 0);
+    EXPECT_TRUE(contains(ended.errors, "--memory-limit")) << ended.errors;
+    EXPECT_EQ(ended.errors.find("signal 9"), std::string::npos) << ended.errors;
 }

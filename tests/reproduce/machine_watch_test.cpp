@@ -90,6 +90,21 @@ TEST_F(Watched, searches_are_watched_too)
         EXPECT_EQ(row.pulse_ratio, 2.0);
 }
 
+TEST_F(Watched, what_a_cpu_quota_stopped_is_added_up_over_the_processes_of_a_run)
+{
+    const json stretch = {{"load",
+                           {{"others", 0.0},
+                            {"average", 1.0},
+                            {"processors", 2u},
+                            {"seconds", 3.0},
+                            {"throttled_periods", 4u},
+                            {"throttled_s", 0.25}}}};
+    MachineWatch watch(host(), {stretch, stretch}, clock());
+    ASSERT_TRUE(watch.load().has_value());
+    EXPECT_EQ(watch.load()->throttling.periods, 8u);
+    EXPECT_EQ(watch.load()->throttling.seconds, 0.5);
+}
+
 // Its pulse is the first view once more: the answers to the current one must be read before or after it.
 TEST_F(Watched, a_gpu_has_its_own_calibration_in_each_scene_and_keeps_its_answers)
 {

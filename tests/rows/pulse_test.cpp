@@ -97,6 +97,30 @@ TEST(Pulse, disturbs_from_a_quarter_on_and_load_from_a_tenth_of_each_processor)
               "calibration during its samples took 6.00 times its fastest; other processes used 1.30 of 2 CPUs");
 }
 
+TEST_F(Pulsed, a_row_that_a_cpu_quota_stopped_during_its_samples_is_noisy)
+{
+    Pulses pulses(pointers_to(rows_), host(), clock());
+    std::uint64_t periods = 40; // before the run
+    pulses.set_throttled_periods([&] { return periods; });
+    for (int i = 0; i < 5; ++i) {
+        pulses.take();
+        pulses.sampled(rows_[0], now_s_, now_s_ + 1);
+        periods += 2;
+        pulses.sampled(rows_[1], now_s_ + 1, now_s_ + 2);
+        periods += 100; // during a calibration, or while nothing is sampled
+        for (RowRun& row : rows_)
+            row.samples_s.push_back(1);
+        now_s_ += 3;
+    }
+    pulses.take();
+    pulses.judge_rows(rows_, MachineLoad{0.1, 1, 2});
+    EXPECT_EQ(rows_[0].disturbance, "");
+    EXPECT_EQ(rows_[1].disturbance, "the container's CPU quota stopped it 10 times");
+    rows_[1].device.kind = DeviceKind::gpu;
+    pulses.judge_rows(rows_, {});
+    EXPECT_EQ(rows_[1].disturbance, "") << "it ran elsewhere";
+}
+
 TEST_F(Pulsed, rows_of_a_machine_that_keeps_its_speed_are_not_noisy)
 {
     Pulses pulses(pointers_to(rows_), host(), clock());
