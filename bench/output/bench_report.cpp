@@ -98,7 +98,7 @@ const char* const rate_columns =
     "against the fastest BVH, both builds counted. of copy: what a step loads, times steps, over the bandwidth of "
     "copies, on the row's device, in the level of memory that holds the scene. spread: interquartile range over "
     "median, noisy above 5 %. noisy, too: the pulse, a fixed piece of work repeated through the run, took 1.25 "
-    "times its fastest, or others used more than a tenth of the processors.";
+    "times its fastest, others used more than a tenth of the processors, or a container's CPU quota stopped it.";
 
 /// What the intervals of ratios are of.
 std::string interval_meaning(unsigned runs)

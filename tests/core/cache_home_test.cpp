@@ -1,0 +1,88 @@
+#include "core/base/cache_home.h"
+#include "tests/support/temporary_folder.h"
+
+#include <optional>
+
+using namespace tetrace;
+using namespace tetrace::test;
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A home below a file: nobody can write there, root neither.
+class CacheHomes : public testing::Test {
+protected:
+    CacheHomes()
+    {
+        write_file(folder_ / "file", "");
+        fs::create_directories(folder_ / "temporary");
+    }
+    [[nodiscard]] std::size_t temporary_folders() const
+    {
+        return static_cast<std::size_t>(
+            std::distance(fs::directory_iterator(folder_ / "temporary"), fs::directory_iterator()));
+    }
+    [[nodiscard]] static std::string variable(const char* name)
+    {
+        const char* const value = std::getenv(name);
+        return value != nullptr ? value : "";
+    }
+
+    TemporaryFolder folder_;
+    const std::string closed_ = (folder_ / "file/home").string();
+    ScopedVariable temporary{"TMPDIR", folder_ / "temporary"};
+    ScopedVariable home{"HOME", closed_}, xdg{"XDG_CACHE_HOME", nullptr};
+    ScopedVariable pocl{"POCL_CACHE_DIR", nullptr}, mesa{"MESA_SHADER_CACHE_DIR", nullptr};
+};
+
+} // namespace
+
+TEST_F(CacheHomes, closed_one_is_replaced_by_a_temporary_folder_that_is_removed)
+{
+    {
+        const CacheHome cache;
+        EXPECT_TRUE(variable("XDG_CACHE_HOME").starts_with((folder_ / "temporary/tetrace-cache-").string()));
+        EXPECT_EQ(cache_home(), variable("XDG_CACHE_HOME"));
+        EXPECT_EQ(closed_cache_home(), closed_ + "/.cache");
+        EXPECT_EQ(cache.note(), closed_ +
+                                    "/.cache cannot be written to (Not a directory): built scenes and compiled "
+                                    "kernels are in " +
+                                    variable("XDG_CACHE_HOME") +
+                                    " until this run ends; set XDG_CACHE_HOME to a folder that can be written to");
+        write_file(cache_home() / "scene", "x");
+        EXPECT_EQ(temporary_folders(), 1u);
+        EXPECT_EQ(CacheHome().note(), "") << "a process that is started from this one has what it needs";
+    }
+    EXPECT_EQ(temporary_folders(), 0u);
+}
+
+TEST_F(CacheHomes, folder_that_is_kept_is_named)
+{
+    std::optional<CacheHome> cache(std::in_place);
+    cache->keep();
+    EXPECT_TRUE(contains(cache->note(), ", which is kept; set XDG_CACHE_HOME to it to find them again"));
+    cache.reset();
+    EXPECT_EQ(temporary_folders(), 1u);
+}
+
+TEST_F(CacheHomes, open_one_is_left_as_it_is)
+{
+    const ScopedVariable open("HOME", folder_ / "home");
+    const CacheHome cache;
+    EXPECT_EQ(cache.note(), "");
+    EXPECT_EQ(variable("XDG_CACHE_HOME"), "");
+    EXPECT_EQ(temporary_folders(), 0u);
+    EXPECT_FALSE(fs::exists(folder_ / "home")) << "nothing is made before it is needed";
+}
+
+TEST_F(CacheHomes, drivers_own_variables_are_replaced_only_if_their_folders_are_closed)
+{
+    const ScopedVariable open("HOME", folder_ / "home");
+    const ScopedVariable opencl("POCL_CACHE_DIR", closed_), vulkan("MESA_SHADER_CACHE_DIR", folder_ / "mesa");
+    const CacheHome cache;
+    EXPECT_TRUE(contains(variable("POCL_CACHE_DIR"), "/temporary/tetrace-cache-"));
+    EXPECT_EQ(variable("MESA_SHADER_CACHE_DIR"), (folder_ / "mesa").string());
+    EXPECT_EQ(variable("XDG_CACHE_HOME"), "");
+    EXPECT_TRUE(contains(cache.note(), closed_ + " cannot be written to"));
+}
