@@ -194,6 +194,7 @@ TEST_F(Messages, tables_and_sentences_fit_the_terminal)
 TEST_F(Messages, verdicts_of_a_check_are_there_on_a_terminal_of_any_width)
 {
     const ScopedVariable term("TERM", "xterm"), none("NO_COLOR", "1");
+    std::size_t all_verdicts = 0; // where all columns fit
     for (const char* const columns : {"80", "60", "40"}) {
         const ScopedVariable width("COLUMNS", columns);
         Terminal terminal;
@@ -208,6 +209,12 @@ TEST_F(Messages, verdicts_of_a_check_are_there_on_a_terminal_of_any_width)
         }
         for (const char* const title : {"  openmp", "  cuda-host", "  embree", "  wrong  lost", "  self-test"})
             EXPECT_TRUE(contains(screen, title)) << screen;
+        std::size_t verdicts = 0;
+        for (std::size_t at = screen.find("bit-exact"); at != std::string::npos; at = screen.find("bit-exact", at + 1))
+            ++verdicts;
+        if (all_verdicts == 0) all_verdicts = verdicts;
+        EXPECT_GT(verdicts, 0u) << screen;
+        EXPECT_EQ(verdicts, all_verdicts) << screen;
         const std::size_t left_out = screen.find("Left out in 40 columns: hit hash");
         EXPECT_EQ(left_out != std::string::npos, std::string(columns) == "40") << screen;
     }
