@@ -2,6 +2,8 @@
 
 #include "core/base/error.h"
 
+#include <dlfcn.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdlib>
@@ -56,8 +58,10 @@ std::unique_ptr<vk::raii::Context> open_loader()
     try {
         return std::make_unique<vk::raii::Context>();
     } catch (const std::exception&) {
-        throw Error(ErrorKind::missing, "the Vulkan loader libvulkan.so.1 cannot be opened; install libvulkan1 and the "
-                                        "GPU's driver, or mesa-vulkan-drivers");
+        const char* const why = ::dlerror(); // the bindings do not say
+        throw Error(ErrorKind::missing, "the Vulkan loader libvulkan.so.1 cannot be opened" +
+                                            (why != nullptr ? std::string(": ") + why : std::string()) +
+                                            "; install libvulkan1 and the GPU's driver, or mesa-vulkan-drivers");
     }
 }
 
