@@ -77,6 +77,8 @@ TEST_F(ControlGroupsOf, strictest_limit_up_the_path_counts_in_version_2)
     EXPECT_EQ(groups().free_memory_bytes(), 400u) << "file caches are not counted as used";
     EXPECT_EQ(groups().throttling().value().periods, 7u) << "pod has no quota";
     EXPECT_DOUBLE_EQ(groups().throttling().value().seconds, 1.5);
+    write(sys_ + "kube/pod/box/cpu.max", "50000 100000\n");
+    EXPECT_DOUBLE_EQ(groups().cpus().value(), 0.5);
 }
 
 TEST_F(ControlGroupsOf, container_with_a_namespace_of_its_own_has_its_limits_at_the_root)
@@ -84,6 +86,7 @@ TEST_F(ControlGroupsOf, container_with_a_namespace_of_its_own_has_its_limits_at_
     for (const char* const group : {"/", "/../../outside"}) {
         have_unified(group);
         write(sys_ + "cpu.max", "320000 100000\n");
+        write("sys/outside/cpu.max", "100000 100000\n"); // no group
         write(sys_ + "memory.max", "536870912\n");
         EXPECT_EQ(groups().threads(), 3u) << group;
         EXPECT_EQ(groups().memory_bytes(), 536870912u) << group;
@@ -100,6 +103,7 @@ TEST_F(ControlGroupsOf, container_of_version_1_sees_its_group_at_the_mount)
     write(sys_ + "cpu,cpuacct/inner/cpu.cfs_quota_us", "-1\n");
     write(sys_ + "cpu,cpuacct/inner/cpu.cfs_period_us", "100000\n");
     write(sys_ + "memory/memory.limit_in_bytes", "9223372036854771712\n");
+    EXPECT_FALSE(groups().memory_bytes()) << "how version 1 writes no limit";
     write(sys_ + "memory/inner/memory.limit_in_bytes", "3000\n");
     write(sys_ + "memory/inner/memory.usage_in_bytes", "2500\n");
     write(sys_ + "memory/inner/memory.stat", "inactive_file 1\ntotal_inactive_file 1000\ntotal_active_file 500\n");

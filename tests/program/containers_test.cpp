@@ -146,14 +146,15 @@ TEST_F(Containers, scenes_of_a_cache_that_may_only_be_read_are_read)
 
 TEST_F(Containers, read_only_file_system_has_every_device)
 {
-    write_file(folder_ / "script",
-               "mount --make-rprivate / && mount -t tmpfs none /dev/shm && mount -o remount,ro,bind / || exit 77\n"
-               "touch here 2> /dev/null && exit 77\nexec \"$@\"\n");
+    write_file(folder_ / "script", "mount --make-rprivate / && mount -t tmpfs -o exec none /dev/shm && mount -t tmpfs "
+                                   "-o noexec none /var/tmp && mount -o remount,ro,bind / || exit 77\n"
+                                   "touch here 2> /dev/null && exit 77\nexec \"$@\"\n");
     write_file(folder_ / "stdout", ""), write_file(folder_ / "stderr", "");
     const Ended ended = run_by("HOME=/nonexistent unshare -m sh ./script " + nobody(), "check" + std::string(one_row));
     if (ended.code == 77 || contains(ended.errors, "unshare"))
         GTEST_SKIP() << "this user may not make a file system read-only: " << ended.errors;
     EXPECT_EQ(ended.code, 0) << ended.errors;
+    EXPECT_TRUE(contains(ended.errors, " are in /dev/shm/")) << "drivers run code from there: " << ended.errors;
     EXPECT_TRUE(contains(ended.errors, "/nonexistent/.cache cannot be written to (")) << ended.errors;
     EXPECT_EQ(bool(contains(ended.out, "  opencl ")), has_opencl()) << ended.out;
 }
