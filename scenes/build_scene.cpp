@@ -112,7 +112,7 @@ Ending ending_of_exit(int code)
         return {ErrorKind::internal, "the builder failed by its own fault (exit code 4)", "please report it"};
     case BUILDER_SELF_INTERSECTION:
         return {ErrorKind::invalid_input, "the mesh intersects itself",
-                "give `--repair`, or repair the mesh so that its triangles meet only in shared edges and vertices",
+                "leave out `--no-repair`, or repair the mesh so that its triangles meet only in shared edges and vertices",
                 true};
     case BUILDER_TETGEN_REFUSED:
         return {ErrorKind::invalid_input, "TetGen refused the mesh",
@@ -224,6 +224,8 @@ struct Run {
     {
         return outcome.end == ChildOutcome::End::exited && outcome.code == BUILDER_SELF_INTERSECTION;
     }
+    /// Whether the repair was what it was ended in.
+    [[nodiscard]] bool is_repairing() const { return report.stage.starts_with("repairing"); }
     /// Whether a scene of only the mesh is possible: rays can be traced through its triangles.
     [[nodiscard]] bool only_tets_failed() const
     {
@@ -308,7 +310,7 @@ BuildEnd build_scene(const fs::path& mesh, const fs::path& out, const std::strin
     if (!options.mesh_will_do || !run.only_tets_failed()) throw error;
     BuildOptions mesh_only = options;
     mesh_only.time_limit_s = std::max(options.time_limit_s, min_mesh_only_s);
-    if (run.repair_failed()) mesh_only.repair = false;
+    if (run.repair_failed() || run.is_repairing()) mesh_only.repair = false;
     std::vector<std::string> arguments = arguments_of(mesh, out, label, mesh_only, {options.switches});
     arguments.emplace_back("--mesh-only");
     const Run second = run_builder(builder, arguments, label, mesh_only, progress);

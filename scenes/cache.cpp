@@ -247,7 +247,7 @@ fs::path cached_scene_path(const std::string& label, std::uint64_t mesh_hash, co
     std::string key = fmt::format("version {} mesh {} domain {} divisions {} switches {} tets {}", scene_file_version,
                                   hash_text(mesh_hash), name_of(options.domain), options.divisions, options.switches,
                                   name_of(options.tets));
-    if (options.repair) key += " repaired";
+    if (!options.repair) key += " not repaired";
     if (options.tets == TetsKind::rays)
         key += fmt::format(" effort {} optimiser {}", options.effort, optimiser_version);
     const std::string name = fmt::format("{}-{}.tet", safe_name(label), hash_text(hash_of(key)));

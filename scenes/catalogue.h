@@ -68,7 +68,7 @@ struct BuildOptions {
     DomainKind domain = DomainKind::tight;
     std::uint32_t divisions = 8;
     std::string switches = "pq5Y"; ///< TetGen's, as in its manual; results/switches.md says why these
-    bool repair = false;           ///< cut triangles of a mesh that cross, in place of refusing it
+    bool repair = true;            ///< cut triangles of a mesh that cross, in place of refusing it
     TetsKind tets = TetsKind::cdt;
     int effort = usual_effort;     ///< of the optimiser, 0 to 3; for TetsKind::rays
     std::uint32_t resolution = 16; ///< of `cubes`: cubes along each axis

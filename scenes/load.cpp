@@ -114,8 +114,7 @@ std::string MeshSceneLoader::mismatch(const Scene& scene) const
     if (scene.build.switches != asked.switches &&
         std::ranges::find(others, scene.build.switches, &TetsAttempt::switches) == others.end())
         return fmt::format("it was made with the switches {}, not {}", scene.build.switches, asked.switches);
-    if (scene.build.repair.asked != asked.repair)
-        return asked.repair ? "its mesh was not to be repaired" : "its mesh was to be repaired";
+    if (scene.build.repair.asked && !asked.repair) return "its mesh was to be repaired";
     const OptimisedInfo& made = scene.build.optimised;
     if (made.asked != asked.tets)
         return fmt::format("its tets are of kind {}, not {}", name_of(made.asked), name_of(asked.tets));
@@ -242,7 +241,7 @@ struct Unused {
         if (asked.divisions != standard.divisions) options.emplace_back("--divisions");
         if (asked.switches != standard.switches) options.emplace_back("--switches");
         if (asked.effort != standard.effort) options.emplace_back("--effort");
-        if (asked.repair) options.emplace_back("--repair");
+        if (asked.repair != standard.repair) options.emplace_back("--no-repair");
     }
     void add_resolution()
     {

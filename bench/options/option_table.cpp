@@ -94,9 +94,12 @@ std::vector<OptionRow> scene_options()
          building, true, append_scenes},
         {"Scenes", "--repair", "",
          "If triangles of a mesh cross, overlap or touch, cut them along their exact intersections; if that never "
-         "ends, or TetGen fails, merge near layers, and say by how much faces moved. Without it, such a mesh has no "
-         "tets. face_id in results still names the file's triangles.",
-         building, false, set(&Options::repair)},
+         "ends, or TetGen fails, merge near layers, and say by how much faces moved. face_id in results still names "
+         "the file's triangles. This is the default; it undoes --no-repair.",
+         building, false, set(&Options::repair, true)},
+        {"Scenes", "--no-repair", "",
+         "Move nothing and cut nothing: a mesh whose triangles cross has no tets, and only its BVH rows run.",
+         building, false, set(&Options::repair, false)},
         {"Scenes", "--domain", "KIND",
          "The box that the tetrahedralization fills: 'tight', the mesh's bounding box grown by 2 %, or 'wide', a "
          "cube of half-size 3 bounding-sphere radii. 'build' accepts a list. Default: tight.",

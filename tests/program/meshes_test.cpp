@@ -113,17 +113,17 @@ TEST_F(Meshes, repaired_surfaces_are_traced_right_on_every_structure)
     write("cubes.off", joined(box({0, 0, 0}, {1, 1, 1}), box({0.5f, 0.25f, 0.375f}, {1.5f, 1.25f, 1.375f})));
     write("balls.off", joined(sphere(2), moved(sphere(2), {0.31f, 0.47f, 0.59f}, 0.9f)));
     write("flush.off", joined(box({0, 0, 0}, {1, 1, 1}), box({1, 0.25f, 0.25f}, {2, 0.75f, 0.625f})));
-    const Ended refused = run("check --scene cubes.off --backend openmp --size 8");
+    const Ended refused = run("check --scene cubes.off --no-repair --backend openmp --size 8");
     EXPECT_EQ(refused.code, 2);
     EXPECT_TRUE(contains(refused.errors, "--repair cuts them")) << refused.errors;
     for (const char* const tets : {"rays", "cdt"})
-        expect_right("cubes.off,balls.off,flush.off --repair", tets, 7);
+        expect_right("cubes.off,balls.off,flush.off", tets, 7);
     const auto scenes = nlohmann::json::parse(file("a.json"))["tetrace"]["scenes"];
     EXPECT_GT(scenes[0]["repair"]["cut_triangles"], 5);
     EXPECT_GT(scenes[2]["repair"]["dropped"], 0);
     for (const char* const verb : {"bench --samples 3 --tets cdt", "build --tets cdt", "render --out b.ppm --tets cdt",
                                    "reproduce table4 --builds ours"}) {
-        const Ended ended = run(std::string(verb) + " --scene cubes.off --repair --size 16 --views 0" +
+        const Ended ended = run(std::string(verb) + " --scene cubes.off --size 16 --views 0" +
                                 (std::string(verb).starts_with("build") ? "" : " --backend openmp"));
         EXPECT_EQ(ended.code, 0) << verb << ended.errors;
     }
@@ -144,7 +144,7 @@ TEST_F(Meshes, results_name_the_file_s_triangles)
     write("folds.off", mesh);
     std::set<std::size_t> seen;
     for (const char* const pixel : {"32,32", "28,26", "36,26", "30,20", "34,38"}) {
-        const Ended ended = run(std::string("trace --scene folds.off --repair --backend openmp --method maria --layout "
+        const Ended ended = run(std::string("trace --scene folds.off --backend openmp --method maria --layout "
                                             "tet80 --size 64 --out a.json --pixel ") +
                                 pixel);
         ASSERT_EQ(ended.code, 0) << ended.errors;
@@ -232,15 +232,15 @@ TEST_F(Meshes, whose_triangles_cross_are_traced_through_bvhs_as_they_are)
     write_file(folder_ / "pair.off", to_off(crossing_pair()));
     for (const std::string verb : {"check", "bench --samples 3 --sample-time 0"}) {
         const Ended ended =
-            run(verb + " --scene pair.off --size 32 --layout half32,bvh2 --backend openmp --out a.json");
+            run(verb + " --scene pair.off --no-repair --size 32 --layout half32,bvh2 --backend openmp --out a.json");
         EXPECT_EQ(ended.code, 2) << "of the rows without tets: " << ended.errors;
         EXPECT_TRUE(contains(ended.errors, "1 pairs of triangles intersect")) << ended.errors;
         EXPECT_TRUE(contains(ended.errors, "its rows of structure bvh run without tets")) << ended.errors;
         for (const auto& row : rows())
             EXPECT_EQ(row["status"], row["structure"] == "cdt" ? "error" : "ok") << row["name"] << row["reason"];
     }
-    EXPECT_EQ(run("check --scene pair.off --repair --size 32 --layout half32,bvh2 --backend openmp").code, 0);
-    EXPECT_EQ(run("render --scene pair.off --size 32 --views 0 --structure bvh --out a.ppm").code, 0);
+    EXPECT_EQ(run("check --scene pair.off --no-repair --repair --size 32 --layout half32,bvh2 --backend openmp").code, 0);
+    EXPECT_EQ(run("render --scene pair.off --no-repair --size 32 --views 0 --structure bvh --out a.ppm").code, 0);
 }
 
 // The limit of time ends the builder before it has tets.

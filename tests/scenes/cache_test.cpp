@@ -64,7 +64,7 @@ TEST_F(Cache, names_a_scene_by_all_that_decides_its_tets)
     EXPECT_TRUE(is_new("bunny", 1, {.domain = DomainKind::wide}));
     EXPECT_TRUE(is_new("bunny", 1, {.divisions = 7}));
     EXPECT_TRUE(is_new("bunny", 1, {.switches = "pq"}));
-    EXPECT_TRUE(is_new("bunny", 1, {.repair = true}));
+    EXPECT_TRUE(is_new("bunny", 1, {.repair = false}));
     EXPECT_TRUE(is_new("bunny", 1, {.tets = TetsKind::rays}));
     EXPECT_TRUE(is_new("bunny", 1, {.tets = TetsKind::rays, .effort = 3}));
     // Limits decide whether there is a scene, not which; the resolution is that of `cubes`, which is not cached.

@@ -53,7 +53,7 @@ TEST_F(Load, reports_which_options_cubes_ignore)
     expect_unused({.domain = DomainKind::wide, .resolution = 3}, "--domain is");
     expect_unused({.divisions = 3}, "--divisions is");
     expect_unused({.switches = "p"}, "--switches is");
-    expect_unused({.repair = true}, "--repair is");
+    expect_unused({.repair = false}, "--no-repair is");
     expect_unused({.domain = DomainKind::wide, .divisions = 3, .switches = "p"},
                   "--domain, --divisions, --switches are");
 }
