@@ -92,6 +92,11 @@ inline int __clz(int value)
     return std::countl_zero(static_cast<std::uint32_t>(value));
 }
 
+inline std::uint32_t __umulhi(std::uint32_t a, std::uint32_t b)
+{
+    return static_cast<std::uint32_t>(std::uint64_t{a} * b >> 32);
+}
+
 inline int __popc(std::uint32_t value)
 {
     return std::popcount(value);

@@ -1,7 +1,7 @@
 #version 450
 // A kernel as a compute shader (CMakeLists.txt): a thin entry around the shared text. A work group is a tile. TRACE,
-// RAYS or SEARCH: the task. With TRACE, DEFERS_RAYS: rays at ties are deferred to the program with TRACES_DEFERRED,
-// which traces only those.
+// RAYS or SEARCH: the task. With TRACE or RAYS, DEFERS_RAYS: rays at ties are deferred to the program with
+// TRACES_DEFERRED, which traces only those.
 layout(constant_id = 2) const bool selects_minima = false; // true if the driver's own minimum is slower
 #define SELECTS_MINIMA selects_minima
 #ifndef SCENE_IN_TEXELS
@@ -72,6 +72,14 @@ SceneView scene_view()
     return SceneView(launch.divisions, launch.domain, launch.part_log2);
 }
 
+#ifdef RAYS
+Hit trace_pixel(Pixel pixel)
+{
+    uint ray = ray_index(pixel);
+    return trace_given(scene_view(), launch.trace, RAY_QUAD(ray), RAY_QUAD(ray_count(launch) + ray));
+}
+#endif
+
 #ifdef TRACE
 Hit trace_pixel(Pixel pixel)
 {
@@ -125,14 +133,9 @@ void main()
     output_words[GUARD_WORDS + ray] =
         search_exit(scene, RAY_QUAD(ray), RAY_QUAD(count + ray), RAY_QUAD(2u * count + ray));
 #else
-#ifdef RAYS
-    uint ray = ray_index(pixel);
-    Hit hit = trace_given(scene_view(), launch.trace, RAY_QUAD(ray), RAY_QUAD(ray_count(launch) + ray));
-#else
     Hit hit = trace_pixel(pixel);
 #ifdef DEFERS_RAYS
     if (hit.face_id == DEFERRED) leave(pixel);
-#endif
 #endif
     write_hit(hit, output_word(launch, pixel));
 #endif

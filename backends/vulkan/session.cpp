@@ -212,10 +212,11 @@ void VulkanSession::set_rays(std::span<const Quad> quads)
 /// The view of the old ones is destroyed before they are.
 void VulkanSession::bind_rays(Buffer rays)
 {
-    if (in_texels_)
-        programs_.front().bind_texels(context_, rays_as_texels, rays);
-    else
-        programs_.front().bind(context_, RAYS_BINDING, rays);
+    for (Program& program : programs_)
+        if (in_texels_)
+            program.bind_texels(context_, rays_as_texels, rays);
+        else
+            program.bind(context_, RAYS_BINDING, rays);
     rays_ = std::move(rays);
     if (parts_.count() != 0) bind_output(); // the sets of further jobs are copies
 }

@@ -17,8 +17,8 @@
 // The nearest hit so far.
 STRUCT(Nearest)
 {
-    real depth;
-    uint triangle; // of the input, or NO_HIT: then depth is the ray's end
+    real limit;    // no triangle with a larger depth is nearer: at most the ray's end
+    uint triangle; // of the input; NO_HIT; or DEFERRED
     uint at;       // one of the leaf triangles that refer to it
 };
 
@@ -28,6 +28,17 @@ STRUCT(Nearest)
 #define BOX_SLACK real(1.000003814697265625f) // 1 + 2^-18
 // A hit with a smaller depth than 2^-100 is not in front of the ray's origin.
 #define LEAST_DEPTH real(8.67361737988403547e-19f) // 2^-60, in depth times 2^40
+
+// Float depths that differ by NEAR_DEPTH or more are in the order of the exact ones, of which none is NEAR_KEY (in units
+// of 2^-40) from its float depth (docs/spec/bvhs.md, B15).
+#define NEAR_DEPTH real(0.000244140625f) // 2^-12
+#define NEAR_KEY 0x06000000u             // 3/8 of it
+
+// A kernel for devices that execute every branch leaves rays at near triangles to another program (docs/spec/devices.md,
+// W9).
+#ifndef DEFERS_TIES
+#define DEFERS_TIES false
+#endif
 
 // A function, because glslang does not terminate on a precise local that depends on a struct which the loop assigns as
 // a whole.
@@ -49,7 +60,7 @@ KERNEL_FN Nearest no_hit_before(Ray ray, real end)
 #else
     PRECISE real depth = bounded * magnitude(component(ray.direction, deepest_axis(ray.direction)));
 #endif
-    nearest.depth = depth;
+    nearest.limit = depth;
     nearest.triangle = NO_HIT;
     nearest.at = 0u;
     return nearest;
@@ -66,15 +77,54 @@ KERNEL_FN real reciprocal(real a)
     return third;
 }
 
+// weighted: the sum of depths times 2^40, weighted by the sides, whose sum is the determinant.
+KERNEL_FN real depth_of_mean(real weighted, real determinant)
+{
+    PRECISE real inverse = reciprocal(magnitude(determinant));
+    PRECISE real scaled = (determinant < real(0.0f) ? -weighted : weighted) * inverse;
+    PRECISE real depth = scaled * real(9.09494701772928238e-13f); // 2^-40
+    return scaled < LEAST_DEPTH ? NEVER : depth;
+}
+
 #ifdef HOST_SSE2
 #include "kernels/bvh/triangle_sse2.h"
 #else
 #include "kernels/bvh/triangle.h"
 #endif
 
+#include "kernels/bvh/exact_order.h"
+
+// The nearer of a hit and leaf triangle `at`. If several are equally near, the first in the input wins, in any order of
+// the tests.
+KERNEL_FN Nearest nearer_triangle(SceneView scene, RayFrame frame, Nearest nearest, uint at)
+{
+    COUNT_TRIANGLE();
+    real depth = triangle_depth(scene, frame, at);
+    if (depth > nearest.limit) return nearest;
+    uint triangle = FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * at).w;
+    PRECISE real behind = depth + NEAR_DEPTH;
+    PRECISE real far_behind = behind + NEAR_DEPTH;
+    Nearest found;
+    found.limit = minimum(nearest.limit, behind);
+    found.triangle = triangle;
+    found.at = at;
+    if (far_behind >= nearest.limit && nearest.triangle != NO_HIT) {
+        if (triangle == nearest.triangle) return nearest; // a split one
+        if (DEFERS_TIES) {
+            found.limit = real(0.0f);
+            found.triangle = DEFERRED;
+            return found;
+        }
+        if (!is_before_exactly(scene, ray_of(frame), at, depth, nearest.at, triangle_depth(scene, frame, nearest.at)))
+            return nearest;
+    }
+    return found;
+}
+
 KERNEL_FN Hit hit_of(SceneView scene, Ray ray, Nearest nearest)
 {
-    if (nearest.triangle == NO_HIT) return make_no_hit(NO_HIT, NO_TET, 0u);
+    if (nearest.triangle == NO_HIT || (DEFERS_TIES && nearest.triangle == DEFERRED))
+        return make_no_hit(nearest.triangle, NO_TET, 0u);
     uint4 r0 = FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * nearest.at);
     uint4 r1 = FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * nearest.at + 1u);
     uint4 r2 = FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * nearest.at + 2u);

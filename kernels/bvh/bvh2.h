@@ -41,7 +41,7 @@ KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
     Nearest nearest = no_hit_before(ray, end);
 #ifdef HOST_SSE2
     // Before the compiler has the rest of the frame computed; for other rays the loop tests the root again.
-    if (entries_of(node_of(scene, 0u), frame, nearest.depth).met == 0u) {
+    if (entries_of(node_of(scene, 0u), frame, nearest.limit).met == 0u) {
         COUNT_NODE();
         return make_no_hit(NO_HIT, NO_TET, 0u);
     }

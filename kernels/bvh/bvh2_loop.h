@@ -11,8 +11,8 @@
             uint4 xy_b = FETCH(scene, nodes, BVH2_NODE_QUADS * child + 1u);
             uint4 z = FETCH(scene, nodes, BVH2_NODE_QUADS * child + 2u);
             uint4 children = FETCH(scene, nodes, BVH2_NODE_QUADS * child + 3u);
-            real a = box_entry(frame, nearest.depth, xy_a.x, xy_a.y, xy_a.z, xy_a.w, z.x, z.y);
-            real b = box_entry(frame, nearest.depth, xy_b.x, xy_b.y, xy_b.z, xy_b.w, z.z, z.w);
+            real a = box_entry(frame, nearest.limit, xy_a.x, xy_a.y, xy_a.z, xy_a.w, z.x, z.y);
+            real b = box_entry(frame, nearest.limit, xy_b.x, xy_b.y, xy_b.z, xy_b.w, z.z, z.w);
             bool b_first = b < a;
             // BVH2_LEAF by itself is an empty leaf: the ray enters neither box.
             child = minimum(a, b) == NEVER ? BVH2_LEAF : b_first ? children.y : children.x;
@@ -33,7 +33,7 @@
         }
         do {
             --waiting;
-        } while (as_real(SECOND_OF_ENTRY(scene, stack, waiting)) > with_slack(nearest.depth));
+        } while (as_real(SECOND_OF_ENTRY(scene, stack, waiting)) > with_slack(nearest.limit));
         uint next = FIRST_OF_ENTRY(scene, stack, waiting);
         child = params.any_hit != 0u && nearest.triangle != NO_HIT ? BVH2_END : next;
     }

@@ -1,6 +1,6 @@
 // A node in bvh2's loop for processors, which predict which child is next (docs/spec/devices.md, W10).
 {
-    const Entries entries = entries_of(node_of(scene, child), frame, nearest.depth);
+    const Entries entries = entries_of(node_of(scene, child), frame, nearest.limit);
     const uint4& children = FETCH(scene, nodes, BVH2_NODE_QUADS * child + 3u);
     const uint first = children.x, second = children.y;
     if (entries.met == 0u) {

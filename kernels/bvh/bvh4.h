@@ -117,7 +117,7 @@ KERNEL_FN uint child_of(uint4 children, uint key)
 #define GO_TO_WAITING                                                                                                  \
     do {                                                                                                               \
         --waiting;                                                                                                     \
-    } while (as_real(SECOND_OF_ENTRY(scene, stack, waiting)) > with_slack(nearest.depth));
+    } while (as_real(SECOND_OF_ENTRY(scene, stack, waiting)) > with_slack(nearest.limit));
 
 // A traversal is text, as that of bvh2.h; the loop's body is bvh4_loop.h.
 // Entries of the stack: children with their depths; BVH4_END.

@@ -21,7 +21,7 @@
             uint4 near_z = FETCH(scene, nodes, node + 4u + down_z);
             uint4 far_z = FETCH(scene, nodes, node + 5u - down_z);
             uint4 children = FETCH(scene, nodes, node + 6u);
-            uint4 keys = entry_keys(frame, nearest.depth, near_x, near_y, near_z, far_x, far_y, far_z);
+            uint4 keys = entry_keys(frame, nearest.limit, near_x, near_y, near_z, far_x, far_y, far_z);
 #ifdef BVH4_PREDICTED
             uint entered = (keys.x != BVH4_NO_KEY ? 1u : 0u) | (keys.y != BVH4_NO_KEY ? 2u : 0u) |
                            (keys.z != BVH4_NO_KEY ? 4u : 0u) | (keys.w != BVH4_NO_KEY ? 8u : 0u);

@@ -14,7 +14,7 @@
     const __m128 y1 = far_depths(planes + (12u - down_y), frame.inverses.y, frame.offsets.y);
     const __m128 z1 = far_depths(planes + (20u - down_z), frame.inverses.z, frame.offsets.z);
     const __m128 near = _mm_max_ps(_mm_max_ps(x0, y0), _mm_max_ps(z0, _mm_setzero_ps()));
-    const __m128 far = _mm_min_ps(_mm_min_ps(x1, y1), _mm_min_ps(z1, _mm_set1_ps(nearest.depth)));
+    const __m128 far = _mm_min_ps(_mm_min_ps(x1, y1), _mm_min_ps(z1, _mm_set1_ps(nearest.limit)));
     const uint entered = static_cast<uint>(_mm_movemask_ps(_mm_cmple_ps(near, far * _mm_set1_ps(BOX_SLACK))));
     alignas(16) uint4 keys;
     _mm_store_si128(reinterpret_cast<__m128i*>(&keys), _mm_and_si128(_mm_castps_si128(near), _mm_set1_epi32(~3)));

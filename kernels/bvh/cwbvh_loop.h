@@ -8,7 +8,7 @@
         SET_ENTRY(scene, stack, waiting, base, hits)
         ++waiting;
     }
-    Visit visit = visit_of(scene, frame, nearest.depth, octant, node);
+    Visit visit = visit_of(scene, frame, nearest.limit, octant, node);
     uint triangles = visit.hits & ~CWBVH_INNER_HITS;
     while (triangles != 0u) {
         TEST_NEXT_TRIANGLE(visit.triangles)

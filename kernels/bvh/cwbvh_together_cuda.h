@@ -15,7 +15,7 @@
             SET_ENTRY(scene, stack, waiting, base, hits)
             ++waiting;
         }
-        Visit visit = visit_of(scene, frame, nearest.depth, octant, node);
+        Visit visit = visit_of(scene, frame, nearest.limit, octant, node);
         triangles = visit.hits & ~CWBVH_INNER_HITS;
         first = visit.triangles;
         base = visit.children;

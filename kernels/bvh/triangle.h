@@ -77,32 +77,20 @@ KERNEL_FN bool has_two_signs(real a, real b, real c)
     return minimum(minimum(a, b), c) < real(0.0f) && maximum(maximum(a, b), c) > real(0.0f);
 }
 
-// Tests leaf triangle `at`. If several are equally near, the first in the input wins, in any order of the tests.
+// The depth of leaf triangle `at`, or NEVER if the ray does not meet it.
 // Source: Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013; here without a division.
-KERNEL_FN Nearest nearer_triangle(SceneView scene, RayFrame frame, Nearest nearest, uint at)
+KERNEL_FN real triangle_depth(SceneView scene, RayFrame frame, uint at)
 {
-    COUNT_TRIANGLE();
-    uint4 quad = FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * at);
-    Seen a = seen_by(frame, quad);
+    Seen a = seen_by(frame, FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * at));
     Seen b = seen_by(frame, FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * at + 1u));
     Seen c = seen_by(frame, FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * at + 2u));
-    if (has_two_signs(rough_side(b.at, c.at), rough_side(c.at, a.at), rough_side(a.at, b.at))) return nearest;
+    if (has_two_signs(rough_side(b.at, c.at), rough_side(c.at, a.at), rough_side(a.at, b.at))) return NEVER;
 
     real u = fine_side(b.at, c.at);
     real v = fine_side(c.at, a.at);
     real w = fine_side(a.at, b.at);
     PRECISE real determinant = u + v + w;
-    if (has_two_signs(u, v, w) || determinant == real(0.0f)) return nearest;
+    if (has_two_signs(u, v, w) || determinant == real(0.0f)) return NEVER;
     PRECISE real weighted = u * a.depth + v * b.depth + w * c.depth;
-    // Text of triangle_sse2.h's nearer(): with a function for both, nvcc takes three registers more for cwbvh (sm_90).
-    PRECISE real inverse = reciprocal(magnitude(determinant));
-    PRECISE real scaled = (determinant < real(0.0f) ? -weighted : weighted) * inverse;
-    PRECISE real depth = scaled * real(9.09494701772928238e-13f); // 2^-40
-    bool is_nearer = depth < nearest.depth || (depth == nearest.depth && quad.w < nearest.triangle);
-    if (scaled < LEAST_DEPTH || !is_nearer) return nearest;
-    Nearest found;
-    found.depth = depth;
-    found.triangle = quad.w;
-    found.at = at;
-    return found;
+    return depth_of_mean(weighted, determinant);
 }

@@ -114,27 +114,10 @@ KERNEL_FN __m128 quad_in_lanes(const uint4& quad)
     return _mm_loadu_ps(reinterpret_cast<const float*>(&quad));
 }
 
-// The nearer of a hit and leaf triangle `at`, given the sum of its sides and the sum of its depths times 2^40, weighted
-// by the sides. If several are equally near, the first in the input wins, in any order of the tests.
-KERNEL_FN Nearest nearer(Nearest nearest, real determinant, real weighted, uint triangle, uint at)
+// The depth of leaf triangle `at`, or NEVER if the ray does not meet it.
+KERNEL_FN real triangle_depth(SceneView scene, const RayFrame& frame, uint at)
 {
-    PRECISE real inverse = reciprocal(magnitude(determinant));
-    PRECISE real scaled = (determinant < real(0.0f) ? -weighted : weighted) * inverse;
-    PRECISE real depth = scaled * real(9.09494701772928238e-13f); // 2^-40
-    bool is_nearer = depth < nearest.depth || (depth == nearest.depth && triangle < nearest.triangle);
-    if (scaled < LEAST_DEPTH || !is_nearer) return nearest;
-    Nearest found;
-    found.depth = depth;
-    found.triangle = triangle;
-    found.at = at;
-    return found;
-}
-
-KERNEL_FN Nearest nearer_triangle(SceneView scene, const RayFrame& frame, Nearest nearest, uint at)
-{
-    COUNT_TRIANGLE();
-    const uint4& quad = FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * at);
-    const __m128 a = quad_in_lanes(quad);
+    const __m128 a = quad_in_lanes(FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * at));
     const __m128 b = quad_in_lanes(FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * at + 1u));
     const __m128 c = quad_in_lanes(FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * at + 2u));
     // The vertices' lanes are a, b, c, c; their numbers in word w take part in no arithmetic.
@@ -147,13 +130,13 @@ KERNEL_FN Nearest nearer_triangle(SceneView scene, const RayFrame& frame, Neares
     const __m128 next_x = _mm_shuffle_ps(x, x, _MM_SHUFFLE(0, 0, 2, 1));
     const __m128 next_y = _mm_shuffle_ps(y, y, _MM_SHUFFLE(0, 0, 2, 1));
     const __m128 plus = x * next_y, minus = y * next_x;
-    if (has_two_signs(plus, minus)) return nearest;
+    if (has_two_signs(plus, minus)) return NEVER;
 
     const __m128 fine = (plus - minus) + (lost_in_lanes(x, next_y, plus) - lost_in_lanes(y, next_x, minus));
     const __m128 sides = next_lanes(fine); // opposite a, b, c
     const Lanes3 side = each_in_all_lanes(sides),
                  part = each_in_all_lanes(sides * dot_lanes(offset, each_in_all_lanes(frame.forwards)));
     const real determinant = _mm_cvtss_f32(side.x + side.y + side.z);
-    if (has_two_signs(fine, _mm_setzero_ps()) || determinant == 0.0f) return nearest;
-    return nearer(nearest, determinant, _mm_cvtss_f32(part.x + part.y + part.z), quad.w, at);
+    if (has_two_signs(fine, _mm_setzero_ps()) || determinant == 0.0f) return NEVER;
+    return depth_of_mean(_mm_cvtss_f32(part.x + part.y + part.z), determinant);
 }

@@ -76,3 +76,8 @@ KERNEL_FN uint bit_count(uint value)
 {
     return static_cast<uint>(std::popcount(value));
 }
+// The high word of the product of two words.
+KERNEL_FN uint high_product(uint a, uint b)
+{
+    return static_cast<uint>(std::uint64_t{a} * b >> 32u);
+}

@@ -66,3 +66,8 @@ KERNEL_FN uint bit_count(uint value)
 {
     return static_cast<uint>(__popc(value));
 }
+// The high word of the product of two words.
+KERNEL_FN uint high_product(uint a, uint b)
+{
+    return __umulhi(a, b);
+}

@@ -69,3 +69,11 @@ KERNEL_FN uint bit_count(uint value)
 {
     return uint(bitCount(value));
 }
+// The high word of the product of two words.
+KERNEL_FN uint high_product(uint a, uint b)
+{
+    uint high;
+    uint low;
+    umulExtended(a, b, high, low);
+    return high;
+}

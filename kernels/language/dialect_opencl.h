@@ -75,3 +75,8 @@ KERNEL_FN uint bit_count(uint value)
 {
     return popcount(value);
 }
+// The high word of the product of two words.
+KERNEL_FN uint high_product(uint a, uint b)
+{
+    return mul_hi(a, b);
+}
