@@ -8,7 +8,7 @@
 // KERNEL_LOOP_HEADER (BVH)                        build                        structure_bvh.h
 // TETS_IN_PARTS, QUADS_COST_AS_WORDS              host, texel scene view       scene views, tet80.h
 // STACK_TOP, STACK_ENTRIES, GROUP_ITEMS           host or entry file           stack.h, dialects
-// DEFERS_TIES                                     entry file                   entry_on_path.h, walk_*.h
+// DEFERS_TIES                                     entry file                   entry_on_path.h, walk_*.h, bvh.h
 // KEEP_BRANCH, MAYBE_UNUSED, PRECISE, ...         dialect                      walk_by_records.h, bvh/
 // HOST_SSE2                                       openmp/kernel.cpp            bvh/
 // LANES_VOTE                                      dialect_cuda.h               structure_bvh.h, cwbvh.h

@@ -83,9 +83,9 @@ const VerbHelp verb_help[] = {
      "other hit is wrong.\n\n"
      "The first differing ray and the first wrong ray of a row are printed in full, with the 'tetrace trace' "
      "command that follows it. --defects runs the reduced kernels of known compiler defects instead.\n\n"
-     "Exits with 1 if a device is wrong or not exact, or if maria or project, which claim to be robust, have wrong "
-     "or lost rays (--allow-flawed accepts maria's wrong ones). Wrong and lost rays of plane, plucker, stp, ms06, "
-     "Embree, and math mode fast are counted, but are not failures.\n\n"
+     "Exits with 1 if a device is wrong or not exact. Wrong and lost rays that a method has on openmp, too, bit for "
+     "bit, are the method's fault and not the device's: the row is 'flawed', its rays are counted, and the exit code "
+     "is 0.\n\n"
      "Default rows: maria, project on half32 and tet64, and our three BVHs. Other exit-face searches are added if "
      "--method names them, and Embree if --structure, --method, --layout, --backend, --filter or --require does.",
      "  tetrace check --scene cubes --require opencl,vulkan --junit check.xml\n"

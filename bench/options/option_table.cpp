@@ -314,9 +314,9 @@ std::vector<OptionRow> judging_options()
          "which none is skipped or unsupported.",
          bit(Verb::check) | bit(Verb::devices), true, append_backend("--require", &Options::required)},
         {"Judging", "--allow-flawed", "",
-         "Exit with 0 even if maria itself has wrong rays. Lost rays, and rows that differ from openmp, still fail. "
-         "Wrong and lost rays of plane, plucker, stp and ms06 never fail, since these methods are not claimed to be "
-         "robust.",
+         "Exit with 0 even if maria, project or one of our BVHs has wrong rays on a device whose t, u or v differ from "
+         "openmp's. Lost rays there, and rows that differ from openmp, still fail. A row with openmp's bits never "
+         "fails.",
          bit(Verb::check), false, set(&Options::allow_flawed)},
         {"Judging", "--defects", "",
          "Run the reduced kernels of known compiler defects instead of rows; no scene is needed. Exits with 1 if a "

@@ -74,6 +74,7 @@ std::string class_name(const std::string& backend, const std::string& device_nam
 std::string output_xml(const RowRecord& row)
 {
     std::string text = "conformity: " + conformity_text(row);
+    if (status_of(row) == Status::flawed) text += fmt::format("\n{}: {}", name_of(Status::flawed), reason_of(row));
     const Traced* result = traced(row);
     if (result != nullptr && result->hit_hash != 0) text += "\nhit_hash: " + hash_text(result->hit_hash);
     return fmt::format("      <system-out>{}</system-out>\n", xml_text(text));

@@ -131,7 +131,12 @@ bool fails(const RowRecord& row, bool flawed_passes)
 
 int exit_code(const std::vector<RowRecord>& rows, bool flawed_passes)
 {
-    if (std::ranges::any_of(rows, [&](const RowRecord& row) { return fails(row, flawed_passes); })) return 1;
+    return exit_code(rows, [&](const RowRecord& row) { return fails(row, flawed_passes); });
+}
+
+int exit_code(const std::vector<RowRecord>& rows, const std::function<bool(const RowRecord&)>& row_fails)
+{
+    if (std::ranges::any_of(rows, row_fails)) return 1;
     for (const RowRecord& row : rows)
         if (const auto* failed = std::get_if<Failed>(&row.outcome)) return exit_code(failed->kind);
     return 0;

@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/device/self_test.h"
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <variant>
@@ -169,5 +170,6 @@ void set_setup_cost(RowRecord& row, const SetupCost& cost);
 
 /// The exit code for the rows' statuses: 1 if one fails; else that of the first error; else 0.
 [[nodiscard]] int exit_code(const std::vector<RowRecord>& rows, bool flawed_passes);
+[[nodiscard]] int exit_code(const std::vector<RowRecord>& rows, const std::function<bool(const RowRecord&)>& row_fails);
 
 } // namespace tetrace

@@ -107,8 +107,8 @@ Merged merged_check(const Shards& shards, const Options& options)
     report.markdown = report.sheet.markdown();
     if (options.out) report.sheet.labelled("Result", options.out->string());
     write_junit(rows, options);
-    const bool fails = std::ranges::any_of(rows, [&](const RowRecord& row) { return fails_check(row, options); });
-    return {std::move(report), fails ? 1 : exit_code(rows, options.allow_flawed), error_of([&] {
+    const int code = exit_code(rows, [&](const RowRecord& row) { return fails_check(row, options); });
+    return {std::move(report), code, error_of([&] {
                 require_judged(rows, options.required);
                 require_answers(rows, "checked");
             })};

@@ -29,13 +29,13 @@ STRUCT(Nearest)
 // A hit with a smaller depth than 2^-100 is not in front of the ray's origin.
 #define LEAST_DEPTH real(8.67361737988403547e-19f) // 2^-60, in depth times 2^40
 
-// Float depths that differ by NEAR_DEPTH or more are in the order of the exact ones, of which none is NEAR_KEY (in units
-// of 2^-40) from its float depth (docs/spec/bvhs.md, B15).
-#define NEAR_DEPTH real(0.000244140625f) // 2^-12
-#define NEAR_KEY 0x06000000u             // 3/8 of it
+// Float depths that differ by NEAR_DEPTH or more are in the order of the exact ones, of which none is NEAR_KEY (in
+// units of 2^-40) from its float depth (docs/spec/bvhs.md, B15).
+#define NEAR_DEPTH real(0.0001220703125f) // 2^-13
+#define NEAR_KEY 0x03000000u              // 3/8 of it
 
-// A kernel for devices that execute every branch leaves rays at near triangles to another program (docs/spec/devices.md,
-// W9).
+// A kernel for devices that execute every branch leaves rays at near triangles to another program
+// (docs/spec/devices.md, W9).
 #ifndef DEFERS_TIES
 #define DEFERS_TIES false
 #endif
@@ -88,15 +88,17 @@ KERNEL_FN real depth_of_mean(real weighted, real determinant)
 
 #ifdef HOST_SSE2
 #include "kernels/bvh/triangle_sse2.h"
+#define FRAME const RayFrame&
 #else
 #include "kernels/bvh/triangle.h"
+#define FRAME RayFrame
 #endif
 
 #include "kernels/bvh/exact_order.h"
 
 // The nearer of a hit and leaf triangle `at`. If several are equally near, the first in the input wins, in any order of
 // the tests.
-KERNEL_FN Nearest nearer_triangle(SceneView scene, RayFrame frame, Nearest nearest, uint at)
+KERNEL_FN Nearest nearer_triangle(SceneView scene, FRAME frame, Nearest nearest, uint at)
 {
     COUNT_TRIANGLE();
     real depth = triangle_depth(scene, frame, at);
@@ -120,6 +122,7 @@ KERNEL_FN Nearest nearer_triangle(SceneView scene, RayFrame frame, Nearest neare
     }
     return found;
 }
+#undef FRAME
 
 KERNEL_FN Hit hit_of(SceneView scene, Ray ray, Nearest nearest)
 {

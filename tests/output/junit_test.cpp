@@ -2,6 +2,7 @@
 
 #include "bench/measuring/view_recorder.h"
 #include "bench/terminal/text.h"
+#include "bench/verbs/commands.h"
 #include "scenes/procedural.h"
 #include "tests/support/temporary_folder.h"
 
@@ -110,4 +111,33 @@ TEST(Junit, a_wrong_row_is_a_failure_that_shows_the_first_difference)
     EXPECT_TRUE(contains(xml, "hit_hash: "));
     EXPECT_TRUE(contains(xml, "classname=\"tetrace.openmp."));
     expect_valid(xml);
+}
+
+TEST(Junit, a_flaw_of_a_method_on_a_bit_exact_device_passes_and_is_named)
+{
+    RowRecord row = skipped_row("");
+    Traced result;
+    result.compared = true;
+    result.verdicts.wrong = 3;
+    row.outcome = result;
+    ASSERT_EQ(status_of(row), Status::flawed);
+    EXPECT_FALSE(fails_check(row, {}));
+    const std::string xml = junit_xml({row}, {fails_check(row, {})});
+    EXPECT_TRUE(contains(xml, "failures=\"0\" errors=\"0\""));
+    EXPECT_TRUE(contains(xml, "conformity: bit-exact\nflawed: 3 wrong")) << xml;
+
+    result.verdicts.lost = 1;
+    row.outcome = result;
+    EXPECT_FALSE(fails_check(row, {})) << "openmp's is lost, too";
+    result.compared = false;
+    row.outcome = result;
+    EXPECT_FALSE(fails_check(row, {})) << "the reference has the method's flaws";
+    result.compared = true;
+    result.inexact = 1;
+    row.outcome = result;
+    EXPECT_TRUE(fails_check(row, {})) << "the device may be at fault";
+    result.inexact = 0;
+    result.different = 1;
+    row.outcome = result;
+    EXPECT_TRUE(fails_check(row, {}));
 }
