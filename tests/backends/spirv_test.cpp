@@ -163,7 +163,7 @@ TEST(Spirv, storage_buffers_are_those_of_scene_arrays_and_layout)
         if (kernel.name.ends_with("_texels")) {
             EXPECT_EQ(module.texels(), expected_texels(kernel.name)) << kernel.name;
             std::map<std::string, Array> arrays = {{"output_words", {OUTPUT_BINDING, 4, true}}};
-            if (kernel.name.find("_trace_le") != kernel.name.npos)
+            if (kernel.name.find("_leaves_") != kernel.name.npos || kernel.name.find("_left_") != kernel.name.npos)
                 arrays["deferred_words"] = {DEFERRED_BINDING, 4, true};
             EXPECT_EQ(module.arrays(), arrays) << kernel.name;
         } else {
