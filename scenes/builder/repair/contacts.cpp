@@ -45,9 +45,14 @@ public:
                 if (place < first && length(to_double(points[place]) - to_double(point)) <= tolerance_) first = place;
         }
         if (first != none) return first;
+        add(point);
+        return static_cast<std::uint32_t>(points.size() - 1);
+    }
+
+    void add(Float3 point)
+    {
         cells_[cell_of(point, {0, 0, 0})].push_back(static_cast<std::uint32_t>(points.size()));
         points.push_back(point);
-        return static_cast<std::uint32_t>(points.size() - 1);
     }
 
     std::vector<Float3> points;
@@ -70,10 +75,11 @@ private:
 
 class ContactFinder {
 public:
-    ContactFinder(TriangleMesh& mesh, double tolerance) : mesh_(mesh), places_(tolerance / 2), tolerance_(tolerance)
+    ContactFinder(TriangleMesh& mesh, double tolerance, const std::vector<bool>& chosen)
+        : mesh_(mesh), places_(tolerance / 2), tolerance_(tolerance), chosen_(chosen)
     {
         for (const Float3 vertex : mesh.vertices)
-            places_.find_or_add(vertex);
+            places_.add(vertex);
         contacts_.in_triangles.resize(mesh.triangles.size());
         contacts_.near_triangles.resize(mesh.triangles.size());
     }
@@ -112,7 +118,7 @@ private:
     {
         std::vector<GrownBox> boxes;
         for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i)
-            boxes.emplace_back(grown_box(i, 0.51), i);
+            if (chosen_[i]) boxes.emplace_back(grown_box(i, 0.51), i);
         std::vector<Edge> pairs;
         CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const GrownBox& a, const GrownBox& b) {
             pairs.push_back(edge_of(a.info(), b.info()));
@@ -164,7 +170,7 @@ private:
             points.emplace_back(CGAL::Bbox_3(p.x, p.y, p.z, p.x, p.y, p.z), i);
         }
         for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i)
-            triangles.emplace_back(grown_box(i, 1.01), i);
+            if (chosen_[i]) triangles.emplace_back(grown_box(i, 1.01), i);
         std::vector<Edge> near; // vertex, triangle
         CGAL::box_intersection_d(points.begin(), points.end(), triangles.begin(), triangles.end(),
                                  [&](const GrownBox& a, const GrownBox& b) { near.emplace_back(a.info(), b.info()); });
@@ -223,24 +229,44 @@ private:
     TriangleMesh& mesh_;
     Places places_;
     double tolerance_;
+    const std::vector<bool>& chosen_;
     Contacts contacts_;
     std::set<std::pair<Edge, Edge>> met_;
 };
 
 } // namespace
 
-void merge_near_vertices(TriangleMesh& mesh, double distance)
+void merge_near_vertices(TriangleMesh& mesh, double distance, const std::vector<bool>& chosen)
 {
+    std::vector<bool> is_chosen(mesh.vertices.size());
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+        for (const std::uint32_t vertex : mesh.triangles[i])
+            if (chosen[i]) is_chosen[vertex] = true;
     Places places(distance);
+    std::vector<std::uint32_t> of_place, moved(mesh.vertices.size(), none);
+    TriangleMesh merged;
+    const auto add = [&](std::uint32_t vertex) {
+        merged.vertices.push_back(mesh.vertices[vertex]);
+        return static_cast<std::uint32_t>(merged.vertices.size() - 1);
+    };
     for (Triple& triangle : mesh.triangles)
-        for (std::uint32_t& vertex : triangle)
-            vertex = places.find_or_add(mesh.vertices[vertex]);
-    mesh.vertices = std::move(places.points);
+        for (std::uint32_t& vertex : triangle) {
+            std::uint32_t& number = moved[vertex];
+            if (number == none && is_chosen[vertex]) {
+                const std::uint32_t place = places.find_or_add(mesh.vertices[vertex]);
+                if (place == of_place.size()) of_place.push_back(add(vertex));
+                number = of_place[place];
+            } else if (number == none) {
+                number = add(vertex);
+            }
+            vertex = number;
+        }
+    mesh.vertices = std::move(merged.vertices);
 }
 
-Contacts find_contacts(TriangleMesh& mesh, double tolerance)
+Contacts find_contacts(TriangleMesh& mesh, double tolerance, const std::vector<bool>& chosen)
 {
-    return ContactFinder(mesh, tolerance).find();
+    return ContactFinder(mesh, tolerance, chosen).find();
 }
 
 } // namespace tetrace

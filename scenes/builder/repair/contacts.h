@@ -26,13 +26,14 @@ struct Contacts {
     std::vector<std::vector<std::uint32_t>> near_triangles; ///< of each triangle
 };
 
-/// Moves each vertex to the first one within the distance, so that no two are nearer. Triangles may lose their area,
-/// and some vertices are then of no triangle.
-void merge_near_vertices(TriangleMesh& mesh, double distance);
+/// Moves each vertex of the chosen triangles to the first such one within the distance, so that no two of these are
+/// nearer. Triangles may lose their area. Vertices of no triangle go.
+void merge_near_vertices(TriangleMesh& mesh, double distance, const std::vector<bool>& chosen);
 
-/// Adds a vertex where edges pass each other within the tolerance and where an edge crosses a triangle, unless one is
-/// within half the tolerance; then finds the vertices within the tolerance of each edge and triangle. mesh: as
-/// merge_near_vertices() left it, with half the tolerance, and without degenerate triangles.
-[[nodiscard]] Contacts find_contacts(TriangleMesh& mesh, double tolerance);
+/// Adds a vertex where edges of the chosen triangles pass each other within the tolerance and where one crosses another
+/// such triangle, unless a vertex is within half the tolerance; then finds the vertices within the tolerance of these
+/// edges and triangles. mesh: as merge_near_vertices() left it, with half the tolerance, and without degenerate
+/// triangles.
+[[nodiscard]] Contacts find_contacts(TriangleMesh& mesh, double tolerance, const std::vector<bool>& chosen);
 
 } // namespace tetrace

@@ -30,114 +30,138 @@ double in_mesh_units(double length, const BuildInfo& build)
 
 constexpr std::size_t max_growth = 4; // passes that more than cut what is new lead nowhere
 
-// One way to repair a mesh, from its triangles as they are; the passes stop where it leads nowhere.
-class Way {
-public:
-    Way(const Scene& scene, const std::function<void(const std::string&)>& tell) : result(scene), tell_(tell) {}
-    virtual ~Way() = default;
-
-    // Whether no pair crosses at the end. pairs: those that do at first.
-    bool walk(std::vector<TrianglePair> pairs, bool at_least_once)
-    {
-        RepairInfo& info = result.build.repair;
-        info.crossing_pairs = pairs.size();
-        std::size_t triangles_at_first = 0; // after the first pass
-        while (!pairs.empty() || (at_least_once && info.passes == 0)) {
-            left = pairs.size();
-            const bool grows = info.passes > 1 && result.mesh.triangles.size() > max_growth * triangles_at_first;
-            if (info.passes == max_repair_passes || left > max_pairs_of_pieces(info.crossing_pairs) || grows)
-                return false;
-            ++info.passes;
-            if (tell_) tell_(fmt::format("repairing{}, pass {}: {} pairs cross", manner(), info.passes, left));
-            pass(pairs);
-            const CleanUp cleaned = clean_up(result.mesh, result.origins);
-            info.dropped += cleaned.degenerate_triangles + cleaned.duplicate_triangles;
-            if (info.passes == 1) triangles_at_first = result.mesh.triangles.size();
-            pairs = intersecting_pairs(result.mesh);
-        }
-        count_pieces();
-        return true;
-    }
-
-    Scene result;
-    std::size_t left = 0; // pairs that cross
-
-protected:
-    virtual void pass(const std::vector<TrianglePair>& pairs) = 0;
-    [[nodiscard]] virtual std::string manner() const { return ""; }
-
-private:
-    void count_pieces()
-    {
-        std::map<std::uint32_t, std::uint64_t> pieces;
-        for (const std::uint32_t origin : result.origins)
-            ++pieces[origin];
-        for (const auto& [origin, count] : pieces) {
-            result.build.repair.cut_triangles += count > 1 ? 1 : 0;
-            result.build.repair.pieces += count > 1 ? count : 0;
-        }
-    }
-
-    const std::function<void(const std::string&)>& tell_;
+// A mesh on the way to be repaired.
+struct Stage {
+    Scene scene;
+    std::vector<TrianglePair> pairs; // that cross
 };
 
-class Exactly : public Way {
-public:
-    using Way::Way;
+void cut(Stage& stage)
+{
+    Scene& scene = stage.scene;
+    CutMesh pieces = cut_along_intersections(scene.mesh, stage.pairs);
+    scene.mesh = std::move(pieces.mesh);
+    for (std::uint32_t& parent : pieces.parents)
+        parent = scene.origins[parent];
+    scene.origins = std::move(pieces.parents);
+}
 
-protected:
-    void pass(const std::vector<TrianglePair>& pairs) override
-    {
-        CutMesh pieces = cut_along_intersections(result.mesh, pairs);
-        result.mesh = std::move(pieces.mesh);
-        for (std::uint32_t& parent : pieces.parents)
-            parent = result.origins[parent];
-        result.origins = std::move(pieces.parents);
-    }
-};
+void weld(Stage& stage, const std::vector<bool>& chosen)
+{
+    RepairInfo& info = stage.scene.build.repair;
+    weld(stage.scene.mesh, stage.scene.origins, info.tolerance, chosen);
+    info.moved += 1.5 * info.tolerance;
+}
 
-class Welding : public Way {
-public:
-    Welding(const Scene& scene, double tolerance, const std::function<void(const std::string&)>& tell)
-        : Way(scene, tell)
-    {
-        result.build.repair.tolerance = tolerance;
-    }
+std::vector<bool> crossing_triangles(const Stage& stage)
+{
+    std::vector<bool> chosen(stage.scene.mesh.triangles.size());
+    for (const auto& [a, b] : stage.pairs)
+        chosen[a] = chosen[b] = true;
+    return chosen;
+}
 
-protected:
-    void pass(const std::vector<TrianglePair>&) override
-    {
-        RepairInfo& info = result.build.repair;
-        weld(result.mesh, result.origins, info.tolerance);
-        info.moved += 1.5 * info.tolerance;
+void cut_and_weld_in_turn(Stage& stage)
+{
+    if (stage.scene.build.repair.passes % 2 == 1)
+        cut(stage);
+    else
+        weld(stage, crossing_triangles(stage));
+}
+
+void weld_all(Stage& stage)
+{
+    weld(stage, std::vector<bool>(stage.scene.mesh.triangles.size(), true));
+}
+
+// A pass, and what pairs cross after it.
+void make_pass(Stage& stage, void (*change)(Stage&), const std::function<void(const std::string&)>& tell)
+{
+    RepairInfo& info = stage.scene.build.repair;
+    ++info.passes;
+    if (tell)
+        tell(fmt::format("repairing{}, pass {}: {} pairs cross",
+                         info.tolerance == 0 ? ""
+                                             : fmt::format(" with a tolerance of {:.1e}",
+                                                           in_mesh_units(info.tolerance, stage.scene.build)),
+                         info.passes, stage.pairs.size()));
+    change(stage);
+    const CleanUp cleaned = clean_up(stage.scene.mesh, stage.scene.origins);
+    info.dropped += cleaned.degenerate_triangles + cleaned.duplicate_triangles;
+    stage.pairs = intersecting_pairs(stage.scene.mesh);
+}
+
+// Passes until no pair crosses, or until they lead nowhere. is_worth_it: whether one more is, after a pass at whose
+// begin so many pairs crossed.
+template <class IsWorthIt>
+void make_passes(Stage& stage, void (*change)(Stage&), const std::function<void(const std::string&)>& tell,
+                 const IsWorthIt& is_worth_it)
+{
+    const RepairInfo& info = stage.scene.build.repair;
+    std::size_t triangles_at_first = 0;
+    while (!stage.pairs.empty() && info.passes < max_repair_passes) {
+        const std::size_t before = stage.pairs.size();
+        make_pass(stage, change, tell);
+        if (triangles_at_first == 0) triangles_at_first = stage.scene.mesh.triangles.size();
+        if (stage.scene.mesh.triangles.size() > max_growth * triangles_at_first ||
+            stage.pairs.size() > max_pairs_of_pieces(info.crossing_pairs) || !is_worth_it(before))
+            return;
     }
-    [[nodiscard]] std::string manner() const override
-    {
-        return fmt::format(" with a tolerance of {:.1e}", in_mesh_units(result.build.repair.tolerance, result.build));
+}
+
+void count_pieces(Scene& scene)
+{
+    std::map<std::uint32_t, std::uint64_t> pieces;
+    for (const std::uint32_t origin : scene.origins)
+        ++pieces[origin];
+    for (const auto& [origin, count] : pieces) {
+        scene.build.repair.cut_triangles += count > 1 ? 1 : 0;
+        scene.build.repair.pieces += count > 1 ? count : 0;
     }
-};
+}
 
 } // namespace
 
 void repair(Scene& scene, double at_least, const std::function<void(const std::string&)>& tell)
 {
-    const std::vector<TrianglePair> pairs = intersecting_pairs(scene.mesh);
-    std::size_t left = 0;
-    const auto repaired = [&](Way&& way) {
-        const bool good = way.walk(pairs, at_least > 0);
-        left = way.left;
-        if (good) scene = std::move(way.result);
-        return good;
+    Stage start{scene, intersecting_pairs(scene.mesh)};
+    start.scene.build.repair.crossing_pairs = start.pairs.size();
+    if (start.pairs.empty() && at_least == 0) return;
+    Stage stage = start;
+    const auto is_repaired = [&] {
+        if (!stage.pairs.empty()) return false;
+        scene = std::move(stage.scene);
+        count_pieces(scene);
+        return true;
     };
-    if (at_least == 0 && repaired(Exactly(scene, tell))) return;
-    for (const double tolerance : weld_tolerances)
-        if (tolerance >= at_least && repaired(Welding(scene, tolerance, tell))) return;
+    const auto always = [](std::size_t) { return true; };
+    if (at_least == 0) {
+        make_pass(stage, cut, tell);
+        const Stage cut_once = stage;
+        make_passes(stage, cut, tell, [&](std::size_t before) { return 2 * stage.pairs.size() < before; });
+        if (is_repaired()) return;
+        for (const double tolerance : local_tolerances) {
+            stage = cut_once;
+            stage.scene.build.repair.tolerance = tolerance;
+            make_passes(stage, cut_and_weld_in_turn, tell, always);
+            if (is_repaired()) return;
+        }
+    }
+    for (const double tolerance : weld_tolerances) {
+        if (tolerance < at_least) continue;
+        stage = start;
+        stage.scene.build.repair.tolerance = tolerance;
+        make_pass(stage, weld_all, tell);
+        make_passes(stage, weld_all, tell, always);
+        if (is_repaired()) return;
+    }
     throw BuilderFailure(
         BUILDER_SELF_INTERSECTION,
         fmt::format("repairing {}: {} pairs of triangles cross, and {} pairs of their pieces, after cutting them "
                     "exactly and with tolerances up to {:.1e}; remove faces that nearly overlap, or merge nearly equal "
                     "vertices, in another program",
-                    scene.build.source, pairs.size(), left, in_mesh_units(weld_tolerances.back(), scene.build)));
+                    scene.build.source, start.pairs.size(), stage.pairs.size(),
+                    in_mesh_units(weld_tolerances.back(), scene.build)));
 }
 
 std::string repair_text(const BuildInfo& build)

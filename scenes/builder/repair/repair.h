@@ -22,12 +22,15 @@ inline constexpr std::uint32_t max_repair_passes = 10;
     return 10 * crossing_pairs + 1000;
 }
 
-/// The tolerances of weld() that repair() tries, in domain units.
+/// The tolerances of weld() that repair() tries, in domain units: of the triangles that still cross after cuts, then of
+/// all.
+inline constexpr std::array<double, 2> local_tolerances = {0x1p-24, 0x1p-20};
 inline constexpr std::array<double, 3> weld_tolerances = {0x1p-20, 0x1p-18, 0x1p-16};
 
 /// Cuts triangles that cross, overlap or touch, until every two triangles meet only in shared vertices and edges. First
-/// along their exact intersections, by which no vertex moves. Where rounding makes new crossings without end, begins
-/// again with weld() and each of weld_tolerances. at_least: with this tolerance or more, whether triangles cross or
+/// along their exact intersections, by which no vertex moves. Where rounding makes new crossings without end, goes on
+/// after the first cut by turns with weld(), of only the triangles that cross, and exact cuts, with each of
+/// local_tolerances. If that has no end either, begins again with weld() of all and each of weld_tolerances. at_least: with this tolerance or more, whether triangles cross or
 /// not; 0: as said. scene: cleaned (clean_up) and placed, with as many origins as triangles; mesh, origins and
 /// build.repair change. The mesh's bounding box grows by no more than the tolerance. Throws
 /// BuilderFailure{BUILDER_SELF_INTERSECTION} where no way ends.

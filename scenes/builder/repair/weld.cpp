@@ -95,7 +95,7 @@ public:
     void join(std::uint32_t a, std::uint32_t b)
     {
         const auto from = handles_.find(a), to = handles_.find(b);
-        if (from != handles_.end() && to != handles_.end()) overlay_.insert_constraint(from->second, to->second);
+        if (a != b && from != handles_.end() && to != handles_.end()) overlay_.insert_constraint(from->second, to->second);
     }
     // Adds the pieces to the mesh, and a vertex wherever edges cross.
     void add_to_mesh()
@@ -215,19 +215,20 @@ private:
 
 } // namespace
 
-void weld(TriangleMesh& mesh, std::vector<std::uint32_t>& origins, double tolerance)
+void weld(TriangleMesh& mesh, std::vector<std::uint32_t>& origins, double tolerance, std::vector<bool> chosen)
 {
-    merge_near_vertices(mesh, tolerance / 2);
+    merge_near_vertices(mesh, tolerance / 2, chosen);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         const auto [a, b, c] = mesh.triangles[i];
         if (a == b || b == c || c == a) continue;
         mesh.triangles[kept] = mesh.triangles[i];
+        chosen[kept] = chosen[i];
         origins[kept++] = origins[i];
     }
     mesh.triangles.resize(kept);
     origins.resize(kept);
-    Cutter(mesh, find_contacts(mesh, tolerance)).cut(origins);
+    Cutter(mesh, find_contacts(mesh, tolerance, chosen)).cut(origins);
 }
 
 } // namespace tetrace
