@@ -111,9 +111,10 @@ Ending ending_of_exit(int code)
     case BUILDER_INTERNAL:
         return {ErrorKind::internal, "the builder failed by its own fault (exit code 4)", "please report it"};
     case BUILDER_SELF_INTERSECTION:
-        return {ErrorKind::invalid_input, "the mesh intersects itself",
-                "leave out `--no-repair`, or repair the mesh so that its triangles meet only in shared edges and vertices",
-                true};
+        return {
+            ErrorKind::invalid_input, "the mesh intersects itself",
+            "leave out `--no-repair`, or repair the mesh so that its triangles meet only in shared edges and vertices",
+            true};
     case BUILDER_TETGEN_REFUSED:
         return {ErrorKind::invalid_input, "TetGen refused the mesh",
                 fmt::format("{}, or repair the mesh", try_other_switches), true};

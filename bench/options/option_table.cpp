@@ -98,8 +98,8 @@ std::vector<OptionRow> scene_options()
          "the file's triangles. This is the default; it undoes --no-repair.",
          building, false, set(&Options::repair, true)},
         {"Scenes", "--no-repair", "",
-         "Move nothing and cut nothing: a mesh whose triangles cross has no tets, and only its BVH rows run.",
-         building, false, set(&Options::repair, false)},
+         "Move nothing and cut nothing: a mesh whose triangles cross has no tets, and only its BVH rows run.", building,
+         false, set(&Options::repair, false)},
         {"Scenes", "--domain", "KIND",
          "The box that the tetrahedralization fills: 'tight', the mesh's bounding box grown by 2 %, or 'wide', a "
          "cube of half-size 3 bounding-sphere radii. 'build' accepts a list. Default: tight.",

@@ -58,7 +58,8 @@ TEST_F(Load, keeps_repaired_scenes_apart_and_says_what_was_done)
     EXPECT_TRUE(contains(cached.messages.front(), "4 pairs of triangles crossed, and 3 triangles were cut into 20"));
     EXPECT_TRUE(contains(cached.messages.at(1), "the repair moved faces by up to 1.9e-06 to merge near layers"));
     request.build.repair = false;
-    EXPECT_TRUE(contains(error_with("exit " + std::to_string(BUILDER_SELF_INTERSECTION)), "leave out `--no-repair`, or "));
+    EXPECT_TRUE(
+        contains(error_with("exit " + std::to_string(BUILDER_SELF_INTERSECTION)), "leave out `--no-repair`, or "));
 }
 
 TEST_F(Load, hands_on_stages_and_notes)
@@ -136,7 +137,8 @@ TEST_F(Load, gives_only_the_mesh_if_only_tetgen_fails_and_the_mesh_is_enough)
     use_builder("case \"$*\" in *--repair*) exit " + std::to_string(BUILDER_SELF_INTERSECTION) + ";; esac; " + alone);
     EXPECT_TRUE(load().no_tets) << "a repair without end: the mesh as it is";
     request.build.time_limit_s = 0.3;
-    use_builder("case \"$*\" in *--repair*) echo 'stage: repairing, pass 1: 9 pairs cross' >&2; sleep 60;; esac; " + alone);
+    use_builder("case \"$*\" in *--repair*) echo 'stage: repairing, pass 1: 9 pairs cross' >&2; sleep 60;; esac; " +
+                alone);
     EXPECT_TRUE(load().no_tets) << "a repair that takes too long";
     request.build.time_limit_s = 600;
     request.build.repair = false;

@@ -1,6 +1,6 @@
 // Two layers of triangles within some units in the last place of each other: each BVH must return the nearer one, as
-// exact arithmetic says. TETRACE_CAMPAIGN is how many pairs of each kind are made; with it, the counts are printed, those
-// of walks, Embree and drivers beside them.
+// exact arithmetic says. TETRACE_CAMPAIGN is how many pairs of each kind are made; with it, the counts are printed,
+// those of walks, Embree and drivers beside them.
 #include "backends/embree/backend.h"
 #include "backends/openmp/backend.h"
 #include "backends/vulkan/backend.h"
@@ -102,8 +102,7 @@ RaySet rays_at(const Pair& pair, const TriangleMesh& mesh, std::uint64_t seed)
     RaySet set{RayKind::random, RayOrder::tiles, false, 0, TILE_WIDTH, {}};
     while (set.rays.size() < rays_per_pair) {
         const auto number = static_cast<std::uint32_t>(set.rays.size());
-        const auto& triangle =
-            mesh.triangles[random.below(static_cast<std::uint32_t>(mesh.triangles.size()))];
+        const auto& triangle = mesh.triangles[random.below(static_cast<std::uint32_t>(mesh.triangles.size()))];
         double u = random.unit(), v = random.unit();
         if (number % 4 == 1) v = 1 - u;  // at an edge
         if (number % 16 == 2) u = v = 0; // at a vertex
@@ -199,7 +198,8 @@ private:
             kernel.task = Task::rays;
             if (!backend->why_not(0, kernel).empty()) continue;
             PackedScene packed;
-            if (ours) packed = is_walk ? pack(*scene, kernel.layout, TetOrder::chains) : pack_bvh(mesh, bvh, kernel.layout);
+            if (ours)
+                packed = is_walk ? pack(*scene, kernel.layout, TetOrder::chains) : pack_bvh(mesh, bvh, kernel.layout);
             const auto session = backend->open(0, kernel, {&mesh, ours ? &packed : nullptr}, {.threads = 2});
             session->set_rays(is_walk ? given_quads(set, packed) : given_quads_offset(set, mesh));
             std::vector<Hit> answers(set.rays.size());

@@ -95,7 +95,8 @@ public:
     void join(std::uint32_t a, std::uint32_t b)
     {
         const auto from = handles_.find(a), to = handles_.find(b);
-        if (a != b && from != handles_.end() && to != handles_.end()) overlay_.insert_constraint(from->second, to->second);
+        if (a != b && from != handles_.end() && to != handles_.end())
+            overlay_.insert_constraint(from->second, to->second);
     }
     // Adds the pieces to the mesh, and a vertex wherever edges cross.
     void add_to_mesh()
