@@ -11,6 +11,8 @@
 #include <cstring>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <map>
+#include <set>
 #include <sstream>
 #include <string_view>
 #include <unistd.h>
@@ -56,7 +58,8 @@ struct Report {
     std::string stage = "starting", detail;
     double fraction = -1; ///< of the stage
     std::vector<std::string> notes, errors;
-    std::string last_words; ///< the last other line, for example of a failed assertion
+    std::optional<std::vector<std::string>> notes_on_mesh; ///< those before TetGen began
+    std::string last_words;                                ///< the last other line, for example of a failed assertion
 
     void take(const std::string& said)
     {
@@ -80,6 +83,7 @@ struct Report {
 private:
     void begin(const std::string& text)
     {
+        if (text.starts_with("TetGen")) notes_on_mesh = notes;
         stage = text;
         detail.clear();
         fraction = -1;
@@ -177,8 +181,42 @@ Error failure(const std::string& doing, const Ending& ending, const Report& repo
                             label, looked));
 }
 
-std::vector<std::string> arguments_of(const fs::path& mesh, const fs::path& out, const std::string& label,
-                                      const BuildOptions& options, const TetsAttempt& attempt)
+/// The meshes that runs of the builder leave for those after them, one for each tolerance; removed at the end.
+class PreparedMeshes {
+public:
+    explicit PreparedMeshes(fs::path out) : out_(std::move(out)) {}
+    PreparedMeshes(const PreparedMeshes&) = delete;
+    PreparedMeshes& operator=(const PreparedMeshes&) = delete;
+    ~PreparedMeshes()
+    {
+        std::error_code ignored; // it is of no use to anyone
+        for (const double tolerance : tolerances_)
+            fs::remove(file(tolerance), ignored);
+    }
+
+    [[nodiscard]] fs::path file(double tolerance)
+    {
+        tolerances_.insert(tolerance);
+        return fmt::format("{}.mesh{:g}", out_.string(), tolerance);
+    }
+    /// The builder speaks of a mesh only where it prepares it.
+    void add_notes(double tolerance, Report& report)
+    {
+        const auto known = notes_.find(tolerance);
+        if (known != notes_.end())
+            report.notes.insert(report.notes.begin(), known->second.begin(), known->second.end());
+        else if (report.notes_on_mesh)
+            notes_.emplace(tolerance, *report.notes_on_mesh);
+    }
+
+private:
+    fs::path out_;
+    std::set<double> tolerances_;
+    std::map<double, std::vector<std::string>> notes_;
+};
+
+std::vector<std::string> arguments_of(const fs::path& mesh, const fs::path& out, const fs::path& prepared,
+                                      const std::string& label, const BuildOptions& options, const TetsAttempt& attempt)
 {
     std::vector<std::string> arguments = {
         "--mesh",         mesh.string(),
@@ -193,6 +231,7 @@ std::vector<std::string> arguments_of(const fs::path& mesh, const fs::path& out,
         "--tetgen-for",   fmt::format("{:g}", tetgen_share * options.time_limit_s),
         "--optimise-for", fmt::format("{:g}", options.optimise_s > 0 ? options.optimise_s : options.time_limit_s / 2)};
     if (options.repair) arguments.insert(arguments.end(), {"--repair", "--weld", fmt::format("{}", attempt.weld)});
+    arguments.insert(arguments.end(), {"--prepared", prepared.string()});
     return arguments;
 }
 
@@ -278,11 +317,14 @@ BuildEnd build_scene(const fs::path& mesh, const fs::path& out, const std::strin
     if (builder.empty()) fail_without_builder(label);
     TetsAttempt attempt{options.switches};
     double spent_s = 0;
+    PreparedMeshes prepared(out);
     const auto run_attempt = [&] {
         BuildOptions limited = options;
         limited.time_limit_s -= spent_s;
-        Run run = run_builder(builder, arguments_of(mesh, out, label, options, attempt), label, limited, progress);
+        Run run = run_builder(builder, arguments_of(mesh, out, prepared.file(attempt.weld), label, options, attempt),
+                              label, limited, progress);
         spent_s += run.outcome.processor_s;
+        prepared.add_notes(attempt.weld, run.report);
         return run;
     };
     Run run = run_attempt();
@@ -312,7 +354,8 @@ BuildEnd build_scene(const fs::path& mesh, const fs::path& out, const std::strin
     BuildOptions mesh_only = options;
     mesh_only.time_limit_s = std::max(options.time_limit_s, min_mesh_only_s);
     if (run.repair_failed() || run.is_repairing()) mesh_only.repair = false;
-    std::vector<std::string> arguments = arguments_of(mesh, out, label, mesh_only, {options.switches});
+    std::vector<std::string> arguments =
+        arguments_of(mesh, out, prepared.file(0), label, mesh_only, {options.switches});
     arguments.emplace_back("--mesh-only");
     const Run second = run_builder(builder, arguments, label, mesh_only, progress);
     if (second.outcome.end == ChildOutcome::End::interrupted)
@@ -331,12 +374,12 @@ std::vector<TetsAttempt> fallback_attempts(const BuildOptions& options)
         all.push_back({careful, order});
     if (options.switches != quality) all.push_back({quality});
     all.push_back({quality + "MT1e-13"});
+    all.push_back({"p"});
     for (const double weld : {0x1p-20, 0x1p-18, 0x1p-16})
         for (std::uint32_t order = 0; options.repair && order < orders_of_welds; ++order)
             all.push_back({order == 0 ? options.switches : careful, order, weld});
     for (std::uint32_t order = first_orders; order < all_orders; ++order)
         all.push_back({careful, order});
-    all.push_back({"p"});
     all.push_back({"pMT1e-13"});
     return all;
 }

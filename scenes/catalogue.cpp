@@ -73,6 +73,9 @@ const std::vector<CatalogueEntry>& catalogue()
                         {{0, 0.086, 0.53}, {-0.0265, -0.0376, 0.3356}},
                         {{0.1767, 0.0065, -0.4416}, {-0.53, -0.02, 0.3533}},
                         {{0.3533, 0.1567, 0.3533}, {0.212, -0.0376, 0.212}}}),
+        procedural_row("plant",
+                       "120 thin leaves that cross each other, cut where they do; 41,000 triangles before that",
+                       {4'000, 4'000'000, [] { return make_plant(40'000); }, make_plant}),
         {"lattice",
          SceneSource::lattice,
          fmt::format("grid of cubes of any size with solid ones scattered in it; lattice:N has N along an axis, {} "

@@ -42,5 +42,7 @@ namespace tetrace {
 [[nodiscard]] TriangleMesh make_spheres(std::uint32_t triangles);
 /// Thin blades, three triangles each, close above a floor.
 [[nodiscard]] TriangleMesh make_grass(std::uint32_t triangles);
+/// A stem and 120 thin, open leaves that cross it and each other. Only this mesh intersects itself.
+[[nodiscard]] TriangleMesh make_plant(std::uint32_t triangles);
 
 } // namespace tetrace

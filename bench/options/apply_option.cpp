@@ -25,9 +25,9 @@ ApplyOption append_backend(const std::string& option, std::vector<std::string> O
     };
 }
 
-ApplyOption set(bool Options::*flag, bool value)
+ApplyOption set(bool Options::*flag)
 {
-    return [=](Options& options, const std::string&) { options.*flag = value; };
+    return [=](Options& options, const std::string&) { options.*flag = true; };
 }
 
 ApplyOption set_count(const std::string& option, unsigned Options::*count, unsigned low, unsigned high)

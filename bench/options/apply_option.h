@@ -35,7 +35,7 @@ template <class T>
 /// Appends the name of a backend.
 [[nodiscard]] ApplyOption append_backend(const std::string& option, std::vector<std::string> Options::*list);
 
-[[nodiscard]] ApplyOption set(bool Options::*flag, bool value = true);
+[[nodiscard]] ApplyOption set(bool Options::*flag);
 /// A whole number in [low, high].
 [[nodiscard]] ApplyOption set_count(const std::string& option, unsigned Options::*count, unsigned low, unsigned high);
 [[nodiscard]] ApplyOption append_count(const std::string& option, std::vector<unsigned> Options::*list, unsigned low,

@@ -80,6 +80,12 @@ std::string scene_names(bool (*is_named)(const CatalogueEntry&))
     return fmt::format("{}", fmt::join(names, ", "));
 }
 
+void forbid_repair(Options& options, const std::string&)
+{
+    if (options.repair) throw Error(ErrorKind::usage, "--no-repair: --repair is given, too; leave one of them out");
+    options.repair = false;
+}
+
 std::vector<OptionRow> scene_options()
 {
     return {
@@ -95,11 +101,11 @@ std::vector<OptionRow> scene_options()
         {"Scenes", "--repair", "",
          "If triangles of a mesh cross, overlap or touch, cut them along their exact intersections; if that never "
          "ends, or TetGen fails, merge near layers, and say by how much faces moved. face_id in results still names "
-         "the file's triangles. This is the default; it undoes --no-repair.",
-         building, false, set(&Options::repair, true)},
+         "the file's triangles. This is the default.",
+         building, false, [](Options& o, const std::string&) { o.repair = true; }},
         {"Scenes", "--no-repair", "",
          "Move nothing and cut nothing: a mesh whose triangles cross has no tets, and only its BVH rows run.", building,
-         false, set(&Options::repair, false)},
+         false, forbid_repair},
         {"Scenes", "--domain", "KIND",
          "The box that the tetrahedralization fills: 'tight', the mesh's bounding box grown by 2 %, or 'wide', a "
          "cube of half-size 3 bounding-sphere radii. 'build' accepts a list. Default: tight.",

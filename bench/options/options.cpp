@@ -356,7 +356,7 @@ std::vector<SceneRequest> scene_requests(const Options& options)
     build.domain = options.domains.front();
     if (!options.divisions.empty()) build.divisions = options.divisions.front();
     if (!options.switches.empty()) build.switches = options.switches.front();
-    build.repair = options.repair;
+    build.repair = options.repair.value_or(true);
     build.effort = options.effort;
     build.resolution = options.resolution;
     build.time_limit_s = options.time_limit_s;

@@ -106,7 +106,7 @@ struct Options {
     std::vector<TetsKind> tets = {TetsKind::rays};
     std::vector<std::uint32_t> divisions; ///< empty: those of default_build()
     std::vector<std::string> switches;    ///< empty: those of default_build()
-    bool repair = true;
+    std::optional<bool> repair;           ///< empty: as true
     int effort = usual_effort;
     std::uint32_t resolution = BuildOptions{}.resolution;
     double time_limit_s = BuildOptions{}.time_limit_s;

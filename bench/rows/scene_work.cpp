@@ -126,7 +126,7 @@ std::string scene_arguments(const SceneRequest& request, const Options& options)
     const auto add = [&](const char* option, const std::string& value, bool is_default) {
         if (!is_default) text += fmt::format(" {} {}", option, shell_word(value));
     };
-    if (!options.repair) text += " --no-repair";
+    if (!options.repair.value_or(true)) text += " --no-repair";
     const Options usual;
     add("--domain", std::string(name_of(options.domains.front())), options.domains == usual.domains);
     add("--tets", std::string(name_of(options.tets.front())), options.tets == usual.tets);

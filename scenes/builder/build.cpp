@@ -10,11 +10,13 @@
 #include "scenes/builder/repair/repair.h"
 #include "scenes/builder/repair/self_intersection.h"
 #include "scenes/optimise/graded_points.h"
+#include "scenes/scene_file.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numeric>
 
 namespace tetrace {
@@ -174,9 +176,9 @@ void repair_or_refuse(Scene& scene, const BuilderOptions& options, const Builder
         talk.stage("looking for self-intersections");
         return require_no_self_intersection(scene);
     }
-    talk.stage("repairing");
+    talk.stage("repairing where triangles cross");
     repair(scene, options.weld, talk.stage);
-    talk.note(repair_text(scene.build));
+    if (scene.build.repair.passes > 0) talk.note(repair_text(scene.build));
 }
 
 // Most meshes need no repair and lose no triangle: then there is nothing to keep.
@@ -304,14 +306,14 @@ std::string objection_to(const OptimisedTets& result, const Scene& scene)
     return "";
 }
 
-PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& talk)
+namespace {
+
+/// A scene without tets.
+Scene mesh_in_domain(const BuilderOptions& options, const BuilderTalk& talk)
 {
-    PreparedScene prepared;
-    Scene& scene = prepared.scene;
+    Scene scene;
     scene.name = options.name.empty() ? options.mesh.stem().string() : options.name;
     scene.build.source = options.mesh.filename().string();
-    scene.build.switches = options.switches;
-    scene.build.order = options.order;
     scene.build.tool = builder_tool();
 
     talk.stage("reading " + scene.build.source);
@@ -325,6 +327,25 @@ PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& ta
     repair_or_refuse(scene, options, talk);
     drop_own_numbers(scene.origins);
     add_domain(scene, options);
+    return scene;
+}
+
+} // namespace
+
+PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& talk)
+{
+    PreparedScene prepared;
+    Scene& scene = prepared.scene;
+    std::error_code ignored; // then it is made again
+    if (!options.prepared.empty() && std::filesystem::exists(options.prepared, ignored)) {
+        talk.stage("reading the prepared mesh");
+        scene = read_scene(options.prepared, SceneFileKind::mesh_only);
+    } else {
+        scene = mesh_in_domain(options, talk);
+        if (!options.prepared.empty()) write_scene(options.prepared, scene);
+    }
+    scene.build.switches = options.switches;
+    scene.build.order = options.order;
     prepared.surface = domain_surface(scene.domain);
     scene.build.optimised.asked = options.tets;
     if (options.mesh_only) return prepared;

@@ -43,6 +43,8 @@ struct BuilderOptions {
     bool mesh_only = false;      ///< no tets: the mesh is read, cleaned and placed in its domain
     double tetgen_for_s = 0;     ///< TetGen has failed if it takes more processor time; 0: no limit
     double optimise_for_s = 300; ///< the optimiser stops then, with what it has reached; 0: no limit
+    std::filesystem::path prepared =
+        {}; ///< the mesh as repaired and placed: read if it is there, else written; empty: no
 };
 
 /// Called with the stage that begins, and with notes for the user, one line each; and with what a stage reports of
@@ -64,7 +66,8 @@ struct PreparedScene {
 /// This program and the libraries that decide a scene, with their versions.
 [[nodiscard]] std::string builder_tool();
 
-/// Reads, cleans, places and checks a mesh, or repairs it, and makes its domain.
+/// Reads, cleans, places and checks a mesh, or repairs it, and makes its domain; or reads the file of a run before that
+/// did so with the same options, but for those of TetGen and the optimiser.
 /// Throws Error as read_mesh and make_domain do, and BuilderFailure{BUILDER_SELF_INTERSECTION} with the first pairs, or
 /// as repair() does.
 [[nodiscard]] PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& talk);

@@ -99,6 +99,10 @@ std::optional<int> parse(int argc, char** argv, BuilderOptions& options)
     app.set_version_flag("--version", builder_tool());
     app.add_option("--mesh", options.mesh, "mesh file to read")->required()->type_name("FILE");
     app.add_option("--out", options.out, "scene file to write, replaced as a whole")->required()->type_name("FILE.tet");
+    app.add_option("--prepared", options.prepared,
+                   "the mesh as read, repaired and placed: read this file if it is there, else write it; for runs with "
+                   "other switches or orders")
+        ->type_name("FILE");
     app.add_option("--name", options.name, "name of the scene; default: the mesh file's")->type_name("NAME");
     std::string domain(name_of(options.domain));
     const std::string tight(name_of(DomainKind::tight)), wide(name_of(DomainKind::wide));

@@ -45,7 +45,7 @@ const std::map<std::string, std::vector<std::string>> examples = {
     {"A backend", {"openmp", "opencl", "vulkan", "cuda", "embree"}},
     {"A column", {"spread", "mrays_per_s"}},
     {"A scene", {"cubes", "bunny", "armadillo"}},
-    {"A procedural scene", {"atrium", "city", "terrain", "spheres", "grass"}},
+    {"A procedural scene", {"atrium", "city", "terrain", "spheres", "grass", "plant"}},
     {"An option", {"samples", "budget"}}};
 
 } // namespace

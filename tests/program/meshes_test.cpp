@@ -239,8 +239,12 @@ TEST_F(Meshes, whose_triangles_cross_are_traced_through_bvhs_as_they_are)
         for (const auto& row : rows())
             EXPECT_EQ(row["status"], row["structure"] == "cdt" ? "error" : "ok") << row["name"] << row["reason"];
     }
-    EXPECT_EQ(run("check --scene pair.off --no-repair --repair --size 32 --layout half32,bvh2 --backend openmp").code,
-              0);
+    const std::string check = "check --scene pair.off --size 32 --layout half32,bvh2 --backend openmp";
+    EXPECT_EQ(run(check).code, 0);
+    EXPECT_EQ(run(check + " --repair").code, 0);
+    const Ended both = run(check + " --repair --no-repair");
+    EXPECT_EQ(both.code, 2);
+    EXPECT_TRUE(contains(both.errors, "--no-repair: --repair is given, too")) << both.errors;
     EXPECT_EQ(run("render --scene pair.off --no-repair --size 32 --views 0 --structure bvh --out a.ppm").code, 0);
 }
 

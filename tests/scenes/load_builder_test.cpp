@@ -42,7 +42,7 @@ TEST_F(Load, passes_all_options_to_the_builder)
     const std::string run = read_text(folder / "runs");
     EXPECT_TRUE(contains(run, "--mesh " + mesh.string() + " --out "));
     EXPECT_TRUE(contains(run, " --name thing --domain wide --divisions 5 --switches pq3Y --order 0 --tets cdt --effort "
-                              "2 --tetgen-for 150 --optimise-for 300 --repair --weld 0\n"));
+                              "2 --tetgen-for 150 --optimise-for 300 --repair --weld 0 --prepared "));
 }
 
 TEST_F(Load, keeps_repaired_scenes_apart_and_says_what_was_done)
@@ -52,7 +52,7 @@ TEST_F(Load, keeps_repaired_scenes_apart_and_says_what_was_done)
     write_scene(prepared, made);
     use_builder("");
     (void)load();
-    EXPECT_TRUE(contains(read_text(folder / "runs"), "--optimise-for 300 --repair --weld 0\n"));
+    EXPECT_TRUE(contains(read_text(folder / "runs"), "--optimise-for 300 --repair --weld 0 --prepared "));
     const LoadedScene cached = load();
     EXPECT_TRUE(cached.from_cache);
     EXPECT_TRUE(contains(cached.messages.front(), "4 pairs of triangles crossed, and 3 triangles were cut into 20"));
@@ -249,7 +249,10 @@ TEST_F(Load, tries_other_switches_where_tetgen_fails_on_tets_for_rays)
     made.build.order = 1;
     made.build.optimised = {TetsKind::rays, TetsKind::rays, "", request.build.effort, 2, 1, 0.1};
     write_scene(prepared, made);
-    use_builder("case \"$*\" in *'--switches pY0/2/2 --order 1 '*) ;; *) kill -SEGV $$;; esac");
+    use_builder("eval file=\\${$#}\n" // the last argument
+                "if [ ! -e \"$file\" ]; then touch \"$file\"; echo 'note: 4 pairs of triangles crossed' >&2; fi\n"
+                "echo 'stage: TetGen' >&2\n"
+                "case \"$*\" in *'--switches pY0/2/2 --order 1 '*) ;; *) kill -SEGV $$;; esac");
     const LoadedScene loaded = load();
     EXPECT_EQ(loaded.scene.build.switches, "pY0/2/2");
     ASSERT_FALSE(loaded.messages.empty());
@@ -259,6 +262,9 @@ TEST_F(Load, tries_other_switches_where_tetgen_fails_on_tets_for_rays)
     const LoadedScene again = load();
     EXPECT_TRUE(again.from_cache);
     EXPECT_TRUE(contains(again.messages.front(), "made with TetGen's switches pY0/2/2, since pY failed"));
+    EXPECT_TRUE(contains(loaded.messages.at(2), "4 pairs of triangles crossed"));
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder / "cache"))
+        EXPECT_FALSE(contains(entry.path().filename().string(), "mesh")) << entry.path();
     request.build.switches = "pYM"; // the user's own: no others are tried
     use_builder("case \"$*\" in *'--switches pYM '*) kill -SEGV $$;; esac");
     EXPECT_TRUE(contains(error_of([&] { (void)load(); }), "crashed (signal 11"));

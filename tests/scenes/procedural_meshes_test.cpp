@@ -102,6 +102,8 @@ TEST(ProceduralMeshes, are_closed_or_open_as_they_say)
     EXPECT_EQ(edges_with(make_terrain(20'000), 1), 4 * 100u) << "open at its sides only";
     const TriangleMesh grass = make_grass(30'512);
     EXPECT_EQ(edges_with(grass, 1), 5 * 10'000u + 4 * 16u) << "around each blade, and around the floor";
+    const TriangleMesh plant = make_plant(20'000);
+    EXPECT_EQ(edges_with(plant, 1), 120 * (2 * 13u + 4)) << "around each leaf; the stem is closed";
     for (const TriangleMesh& mesh : {make_atrium(20'000), make_city(20'000)}) {
         EXPECT_GT(edges_with(mesh, 1), 300u) << "windows and rims";
         EXPECT_GT(edges_with(mesh, 3), 100u) << "walls that share edges with floors";
@@ -112,7 +114,7 @@ TEST(ProceduralMeshes, have_the_usual_sizes_that_their_descriptions_state)
 {
     EXPECT_EQ(make_grass(68'012).triangles.size(), 3 * 22'500u + 512);
     for (const auto& [name, triangles] : std::map<std::string, double>{
-             {"atrium", 60'000}, {"city", 80'000}, {"terrain", 180'000}, {"spheres", 128'000}})
+             {"atrium", 60'000}, {"city", 80'000}, {"terrain", 180'000}, {"spheres", 128'000}, {"plant", 41'000}})
         EXPECT_NEAR(static_cast<double>(find_in_catalogue(name)->procedural->usual().triangles.size()), triangles,
                     0.01 * triangles)
             << name;
@@ -126,6 +128,7 @@ TEST(ProceduralMeshes, are_the_same_bits_everywhere)
     EXPECT_EQ(hash_of_mesh(make_terrain(20'000)), "eeda525e8d5cb8ef");
     EXPECT_EQ(hash_of_mesh(make_spheres(20'000)), "3750e6862406729c");
     EXPECT_EQ(hash_of_mesh(make_grass(20'000)), "f18ed7f99c7e0457");
+    EXPECT_EQ(hash_of_mesh(make_plant(20'000)), "e0c04c1d6e0fbe7f");
 }
 
 TEST(ProceduralMeshes, are_named_with_a_number_in_their_range)

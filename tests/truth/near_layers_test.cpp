@@ -154,10 +154,11 @@ public:
     {
         const Pair pair = make_pair(kind, ulps, seed);
         judge(pair.mesh, nullptr, rays_at(pair, pair.mesh, seed + 1), kind, as_made_);
-        if (kind != Layers::folded)
+        if (kind != Layers::folded) {
             for (const auto& [name, wrong] : as_made_)
                 EXPECT_TRUE(!name.starts_with("ours") || wrong[static_cast<std::size_t>(kind)] == 0)
                     << name << ", " << kinds[static_cast<std::size_t>(kind)] << ", " << ulps << " ulps, seed " << seed;
+        }
         if (!all_) return;
         const LoadedScene loaded = scene_of(pair.mesh, folder_);
         if (loaded.no_tets) ++without_tets_[static_cast<std::size_t>(kind)];

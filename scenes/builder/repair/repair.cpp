@@ -167,7 +167,6 @@ void repair(Scene& scene, double at_least, const std::function<void(const std::s
 std::string repair_text(const BuildInfo& build)
 {
     const RepairInfo& info = build.repair;
-    if (info.passes == 0) return "no triangles cross: there was nothing to repair";
     const std::string done =
         fmt::format("{} pairs of triangles crossed: {} triangles were cut into {} pieces in {} {}; {} others lay on "
                     "these or had no area after rounding, and were dropped",

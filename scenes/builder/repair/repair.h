@@ -36,7 +36,7 @@ inline constexpr std::array<double, 3> weld_tolerances = {0x1p-20, 0x1p-18, 0x1p
 /// the tolerance. Throws BuilderFailure{BUILDER_SELF_INTERSECTION} where no way ends.
 void repair(Scene& scene, double at_least = 0, const std::function<void(const std::string& stage)>& tell = {});
 
-/// What was done, in one sentence. Lengths in mesh units.
+/// What was done, in one sentence, where something was. Lengths in mesh units.
 [[nodiscard]] std::string repair_text(const BuildInfo& build);
 
 /// What clean_up() took away.
