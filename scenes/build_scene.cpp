@@ -367,7 +367,7 @@ BuildEnd build_scene(const fs::path& mesh, const fs::path& out, const std::strin
 std::vector<TetsAttempt> fallback_attempts(const BuildOptions& options)
 {
     if (options.switches != default_build(options.tets).switches) return {};
-    constexpr std::uint32_t first_orders = 8, orders_of_welds = 3, all_orders = 32;
+    constexpr std::uint32_t first_orders = 8, orders_of_welds = 10, all_orders = 32;
     const std::string careful = options.switches + "0/2/2", quality = default_build(TetsKind::cdt).switches;
     std::vector<TetsAttempt> all;
     for (std::uint32_t order = 0; order < first_orders; ++order)

@@ -152,7 +152,11 @@ void repair(Scene& scene, double at_least, const std::function<void(const std::s
         stage = start;
         stage.scene.build.repair.tolerance = tolerance;
         make_pass(stage, weld_all, tell);
+        const Stage welded_once = stage;
         make_passes(stage, weld_all, tell, always);
+        if (is_repaired()) return;
+        stage = welded_once;
+        make_passes(stage, cut_and_weld_in_turn, tell, always);
         if (is_repaired()) return;
     }
     throw BuilderFailure(
