@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <map>
-#include <set>
 #include <sstream>
 #include <string_view>
 #include <unistd.h>
@@ -181,24 +180,13 @@ Error failure(const std::string& doing, const Ending& ending, const Report& repo
                             label, looked));
 }
 
-/// The meshes that runs of the builder leave for those after them, one for each tolerance; removed at the end.
+/// The meshes that runs of the builder leave for those after them, beside the scene that is made, one for each
+/// tolerance.
 class PreparedMeshes {
 public:
     explicit PreparedMeshes(fs::path out) : out_(std::move(out)) {}
-    PreparedMeshes(const PreparedMeshes&) = delete;
-    PreparedMeshes& operator=(const PreparedMeshes&) = delete;
-    ~PreparedMeshes()
-    {
-        std::error_code ignored; // it is of no use to anyone
-        for (const double tolerance : tolerances_)
-            fs::remove(file(tolerance), ignored);
-    }
 
-    [[nodiscard]] fs::path file(double tolerance)
-    {
-        tolerances_.insert(tolerance);
-        return fmt::format("{}.mesh{:g}", out_.string(), tolerance);
-    }
+    [[nodiscard]] fs::path file(double tolerance) const { return fmt::format("{}.mesh{:g}", out_.string(), tolerance); }
     /// The builder speaks of a mesh only where it prepares it.
     void add_notes(double tolerance, Report& report)
     {
@@ -211,7 +199,6 @@ public:
 
 private:
     fs::path out_;
-    std::set<double> tolerances_;
     std::map<double, std::vector<std::string>> notes_;
 };
 
@@ -255,7 +242,7 @@ struct Run {
     /// Whether TetGen is to blame, so that other switches may help.
     [[nodiscard]] bool tetgen_failed() const
     {
-        if (outcome.end == ChildOutcome::End::signalled) return true;
+        if (outcome.end == ChildOutcome::End::signalled) return !is_repairing();
         return outcome.end == ChildOutcome::End::exited &&
                (outcome.code == BUILDER_TETGEN_REFUSED || outcome.code == BUILDER_ABSURD_OUTPUT);
     }
@@ -269,7 +256,8 @@ struct Run {
     /// Whether a scene of only the mesh is possible: rays can be traced through its triangles.
     [[nodiscard]] bool only_tets_failed() const
     {
-        return tetgen_failed() || repair_failed() || outcome.end == ChildOutcome::End::timed_out ||
+        return tetgen_failed() || repair_failed() || outcome.end == ChildOutcome::End::signalled ||
+               outcome.end == ChildOutcome::End::timed_out ||
                (outcome.end == ChildOutcome::End::exited && outcome.code == BUILDER_OUT_OF_MEMORY);
     }
 };
@@ -342,8 +330,13 @@ BuildEnd build_scene(const fs::path& mesh, const fs::path& out, const std::strin
     if (run.is_good() && failed.size() > 1)
         notes.push_back(
             fmt::format("TetGen made the tets with switches {}, at attempt {}", failed.back(), failed.size()));
-    notes.insert(notes.end(), run.report.notes.begin(), run.report.notes.end());
-    if (run.is_good()) return {run.outcome.interrupted, std::nullopt};
+    const auto add_notes = [&](const Run& of) {
+        notes.insert(notes.end(), of.report.notes.begin(), of.report.notes.end());
+    };
+    if (run.is_good()) {
+        add_notes(run);
+        return {run.outcome.interrupted, std::nullopt};
+    }
     const Error error =
         failure(fmt::format("building scene {} from {} with switches {}", label, mesh.string(),
                             failed.size() == 1 ? failed.front()
@@ -357,10 +350,12 @@ BuildEnd build_scene(const fs::path& mesh, const fs::path& out, const std::strin
     std::vector<std::string> arguments =
         arguments_of(mesh, out, prepared.file(0), label, mesh_only, {options.switches});
     arguments.emplace_back("--mesh-only");
-    const Run second = run_builder(builder, arguments, label, mesh_only, progress);
+    Run second = run_builder(builder, arguments, label, mesh_only, progress);
+    prepared.add_notes(0, second.report);
     if (second.outcome.end == ChildOutcome::End::interrupted)
         throw Error(ErrorKind::interrupted, fmt::format("building scene {}: interrupted", label));
     if (!second.is_good()) throw error;
+    add_notes(second);
     return {second.outcome.interrupted, error};
 }
 

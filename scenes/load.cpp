@@ -180,6 +180,7 @@ FileLock MeshSceneLoader::wait_for_lock() const
 
 void MeshSceneLoader::build_alone()
 {
+    file_ = cache_directory() / file_.filename(); // it was looked for in a cache that can only be read, too
     make_cache_folder(file_.parent_path());
     const FileLock lock = wait_for_lock();
     clear_leftovers(file_);
@@ -191,7 +192,7 @@ void MeshSceneLoader::build_alone()
 void MeshSceneLoader::set_apart()
 {
     const OptimiserEnd end = loaded_.scene.build.optimised.end;
-    file_ = cached_scene_path(label_ + ".unfinished", mesh_hash_, request_.build);
+    file_ = cache_directory() / cached_scene_path(label_ + ".unfinished", mesh_hash_, request_.build).filename();
     loaded_.messages.push_back(fmt::format(
         "the optimiser was stopped early ({}); what it had reached is {}, which --scene takes{}", name_of(end),
         file_.string(), end == OptimiserEnd::out_of_time ? "; --optimise-time allows it more" : ""));

@@ -62,7 +62,7 @@ public:
     [[nodiscard]] double seconds_of(const vk::raii::QueryPool& times) const;
 
     /// Does some work; an error of the API becomes Error, see to_error(), and a message of the validation layers
-    /// becomes Error{driver}. bytes: what the work needs on the device.
+    /// becomes Error{internal}. bytes: what the work needs on the device.
     template <class Work>
     auto run(const std::string& doing, std::uint64_t bytes, const Work& work) const
     {

@@ -46,7 +46,7 @@ struct ProgramId {
 [[nodiscard]] vk::raii::DescriptorSetLayout make_set_layout(const vk::raii::Device& device, const ProgramId& id);
 [[nodiscard]] vk::raii::PipelineLayout make_pipeline_layout(const vk::raii::Device& device, const ProgramId& id,
                                                             const vk::raii::DescriptorSetLayout& set_layout);
-/// id: of a compute shader. info: flags and further structures; stage and layout are set here. Throws Error{driver}
+/// id: of a compute shader. info: flags and further structures; stage and layout are set here. Throws Error{internal}
 /// where id names no program.
 [[nodiscard]] vk::raii::Pipeline compile(const vk::raii::Device& device, const ProgramId& id,
                                          const vk::raii::PipelineLayout& layout,

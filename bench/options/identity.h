@@ -25,7 +25,7 @@ struct HostIdentity {
     std::optional<unsigned> family, model, stepping; ///< of the CPU, if the system reports them: names may say no
                                                      ///< more than "AMD EPYC"
     std::string system;   ///< the distribution's name, the kernel's release, a container's limits
-    unsigned threads = 1; ///< that this process may use, of a quota whole ones
+    unsigned threads = 1; ///< that this process may use, a quota is rounded down
 };
 [[nodiscard]] HostIdentity host_identity();
 

@@ -249,9 +249,8 @@ std::vector<OptionRow> ray_options()
          with_rays, false,
          [](Options& o, const std::string& v) { std::tie(o.width, o.height) = parse_size("--size", v); }},
         {"Rays", "--threads", "N",
-         "Host threads; 0 means OMP_NUM_THREADS if it is set, or else all CPUs that the process may use, of a "
-         "container's "
-         "CPU quota the whole ones. Scenes are always built with 0. Default: 0.",
+         "Host threads; 0 means OMP_NUM_THREADS if it is set, or else all CPUs that the process may use; in a "
+         "container with a CPU quota, the quota rounded down. Scenes are always built with 0. Default: 0.",
          with_rays, false, set_count("--threads", &Options::threads, 0, 4096)},
         {experiments, "--tile", "WxH", "Pixels per work-group: 8x4 or 8x8. Default: depends on the type of the device.",
          reproducing, false, [](Options& o, const std::string& v) { o.tile_height = parse_tile_height(v); }},

@@ -344,8 +344,8 @@ namespace {
 /// Of the scene builder: what is left of a container's limit, so that it ends with a message and is not killed.
 std::uint64_t usual_memory_limit()
 {
-    const std::uint64_t usual = BuildOptions{}.memory_limit_bytes;
-    return std::min(usual, ControlGroups().free_memory_bytes().value_or(usual));
+    const std::uint64_t usual = BuildOptions{}.memory_limit_bytes, least = std::uint64_t{64} << 20; // 0 is no limit
+    return std::clamp(ControlGroups().free_memory_bytes().value_or(usual), least, usual);
 }
 
 } // namespace

@@ -65,7 +65,9 @@ void limit_threads()
     if (!threads || std::getenv("OMP_NUM_THREADS") != nullptr || all <= static_cast<int>(*threads)) return;
     omp_set_num_threads(static_cast<int>(*threads));
     const std::string text = std::to_string(*threads);
-    for (const char* const variable : {"OMP_NUM_THREADS", "LP_NUM_THREADS"}) // of the builder, and of lavapipe
+    // Of the builder, of lavapipe, and of PoCL, older and newer.
+    for (const char* const variable :
+         {"OMP_NUM_THREADS", "LP_NUM_THREADS", "POCL_MAX_PTHREAD_COUNT", "POCL_CPU_MAX_CU_COUNT"})
         ::setenv(variable, text.c_str(), 0);
 }
 

@@ -23,12 +23,18 @@ fs::path absolute_from_environment(const char* variable)
     return path.is_absolute() ? path : fs::path();
 }
 
+bool is_folder(const fs::path& path)
+{
+    std::error_code ignored; // what cannot be looked at is of no use
+    return fs::is_directory(path, ignored);
+}
+
 /// Why no file can be made in a folder, which need not exist yet; empty if one can.
 std::string why_closed(fs::path folder)
 {
     for (;;) {
         if (::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) == 0)
-            return fs::is_directory(folder) ? "" : std::strerror(ENOTDIR);
+            return is_folder(folder) ? "" : std::strerror(ENOTDIR);
         const int reason = errno;
         if (reason != ENOENT || !folder.has_relative_path()) return std::strerror(reason);
         folder = folder.parent_path();
@@ -45,7 +51,7 @@ bool runs_programs(const fs::path& folder)
 fs::path make_temporary()
 {
     std::vector<fs::path> parents = {absolute_from_environment("TMPDIR"), "/tmp", "/var/tmp", "/dev/shm"};
-    std::erase_if(parents, [](const fs::path& parent) { return parent.empty() || !fs::is_directory(parent); });
+    std::erase_if(parents, [](const fs::path& parent) { return parent.empty() || !is_folder(parent); });
     std::ranges::stable_partition(parents, runs_programs);
     for (const fs::path& parent : parents) {
         std::string name = parent / "tetrace-cache-XXXXXX";
@@ -84,7 +90,9 @@ CacheHome::CacheHome()
     for (const char* const variable : {"POCL_CACHE_DIR", "MESA_SHADER_CACHE_DIR"}) {
         const char* const folder = std::getenv(variable);
         if (folder == nullptr || *folder == 0) continue;
-        const std::string why = why_closed(fs::absolute(folder));
+        std::error_code ignored; // there is no working directory: the path is as it was
+        const fs::path whole = fs::absolute(folder, ignored);
+        const std::string why = why_closed(whole.empty() ? fs::path(folder) : whole);
         if (why.empty()) continue;
         closed.push_back(variable);
         if (closed_.empty()) closed_ = std::string(folder) + " cannot be written to (" + why + ")";

@@ -15,7 +15,8 @@ namespace tetrace {
 /// Gives this process, and those that it starts, a temporary folder for caches if the usual one cannot be written to,
 /// as in containers: PoCL has no device without one. XDG_CACHE_HOME then names it, as do POCL_CACHE_DIR and
 /// MESA_SHADER_CACHE_DIR if they were set to folders that cannot be written to. Make it before any driver is loaded and
-/// any thread is started. The folder is removed with it.
+/// any thread is started. The folder is removed with it, but not by a signal
+/// that ends the program.
 class CacheHome {
 public:
     CacheHome();

@@ -195,6 +195,8 @@ void put_exception(ByteWriter& to)
         put_failure(to, Ended::error, error.kind(), error.what());
     } catch (const std::bad_alloc&) {
         put_failure(to, Ended::bad_alloc, ErrorKind::unsupported, {});
+    } catch (const std::logic_error& error) { // ours
+        put_failure(to, Ended::other, ErrorKind::internal, error.what());
     } catch (const std::exception& error) {
         put_failure(to, Ended::other, ErrorKind::driver, error.what());
     } catch (...) {

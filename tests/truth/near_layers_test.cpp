@@ -164,6 +164,8 @@ public:
         if (loaded.no_tets) ++without_tets_[static_cast<std::size_t>(kind)];
         judge(loaded.scene.mesh, loaded.no_tets ? nullptr : &loaded.scene, rays_at(pair, loaded.scene.mesh, seed + 1),
               kind, as_scene_);
+        for (const auto& [name, wrong] : as_scene_)
+            EXPECT_TRUE(!name.starts_with("ours project") || wrong[static_cast<std::size_t>(kind)] == 0) << name;
     }
     void print() const
     {
@@ -234,11 +236,13 @@ TEST(NearLayers, are_told_apart_by_every_bvh)
     const char* const text = std::getenv("TETRACE_CAMPAIGN");
     const std::uint64_t pairs = text == nullptr ? 2 : std::strtoull(text, nullptr, 10);
     Campaign campaign(text != nullptr);
-    for (const Layers kind : {Layers::parallel, Layers::tilted, Layers::crossing, Layers::folded})
+    for (const Layers kind : {Layers::parallel, Layers::tilted, Layers::crossing, Layers::folded}) {
+        if (kind == Layers::folded && text == nullptr) continue; // nothing is claimed of BVHs there
         for (int ulps = 1; ulps <= 64; ulps *= 2)
             for (std::uint64_t seed = 0; seed < pairs; ++seed)
                 campaign.judge(kind, ulps,
                                1000 * seed + static_cast<std::uint64_t>(ulps) +
                                    64 * 1000 * static_cast<std::uint64_t>(kind));
+    }
     if (text != nullptr) campaign.print();
 }

@@ -134,7 +134,7 @@ std::string describe(const SelfIntersections& found, const Scene& scene)
         for (const std::uint32_t triangle : {pair.first, pair.second})
             text += fmt::format("\n  triangle {}{}", source_triangle(scene, triangle), corners_text(scene, triangle));
     if (found.first.size() < found.count) text += "\n  ...";
-    return text + "\n--repair cuts them along their intersections; or remove these in another program (MeshLab: "
+    return text + "\na repair (without --no-repair) cuts them; or remove these in another program (MeshLab: "
                   "Filters, Cleaning and Repairing; CGAL: autorefine) and try again";
 }
 
