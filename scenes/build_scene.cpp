@@ -328,8 +328,11 @@ BuildEnd build_scene(const fs::path& mesh, const fs::path& out, const std::strin
         run = run_attempt();
     }
     if (run.is_good() && failed.size() > 1)
-        notes.push_back(
-            fmt::format("TetGen made the tets with switches {}, at attempt {}", failed.back(), failed.size()));
+        notes.push_back(fmt::format("{}, at attempt {}",
+                                    attempt.switches == cgal_switches
+                                        ? "CGAL made the tets"
+                                        : fmt::format("TetGen made the tets with switches {}", failed.back()),
+                                    failed.size()));
     const auto add_notes = [&](const Run& of) {
         notes.insert(notes.end(), of.report.notes.begin(), of.report.notes.end());
     };
@@ -375,7 +378,8 @@ std::vector<TetsAttempt> fallback_attempts(const BuildOptions& options)
             all.push_back({order == 0 ? options.switches : careful, order, weld});
     for (std::uint32_t order = first_orders; order < all_orders; ++order)
         all.push_back({careful, order});
-    all.push_back({"pMT1e-13"});
+    all.push_back({std::string(cgal_switches)});
+    all.push_back({"pMT1e-13"}); // last, so that the reason given in the end is TetGen's
     return all;
 }
 

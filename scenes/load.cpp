@@ -5,6 +5,7 @@
 #include "core/base/hash.h"
 #include "core/base/stopwatch.h"
 #include "scenes/build_scene.h"
+#include "scenes/builder_exit.h"
 #include "scenes/cache.h"
 #include "scenes/gltf_buffers.h"
 #include "scenes/mesh_files.h"
@@ -154,8 +155,9 @@ bool MeshSceneLoader::read_cached()
         loaded_.messages.push_back(fmt::format("{}: the repair moved faces by up to {:.1e} to merge near layers",
                                                label_, std::ldexp(repair.moved, -info.scale_exponent)));
     if (difference.empty() && info.switches != request_.build.switches)
-        loaded_.messages.push_back(fmt::format("{}: made with TetGen's switches {}, since {} failed", label_,
-                                               info.switches, request_.build.switches));
+        loaded_.messages.push_back(fmt::format("{}: made {}, since TetGen's switches {} failed", label_,
+                                               info.switches == cgal_switches ? "by CGAL" : "with " + info.switches,
+                                               request_.build.switches));
     if (difference.empty() && info.degenerate_triangles + info.duplicate_triangles > 0)
         loaded_.messages.push_back(
             fmt::format("{}: {} degenerate and {} duplicate triangles were removed when it was built", label_,

@@ -128,7 +128,7 @@ std::vector<OptionRow> scene_options()
              std::to_string(BuildOptions{}.divisions) + ".",
          building, true, append_count("--divisions", &Options::divisions, 1, 64)},
         {"Scenes", "--switches", "SWITCHES",
-         "TetGen's switches, as in its manual. 'build' accepts a list. Default: " +
+         "TetGen's switches, as in its manual, or cgal, tets by CGAL 6.1 or later. 'build' accepts a list. Default: " +
              default_build(TetsKind::rays).switches + " for --tets rays, " + default_build(TetsKind::cdt).switches +
              " for --tets cdt.",
          building, true, append_text(&Options::switches)},

@@ -204,25 +204,24 @@ const char* name_of(Kind kind)
 }
 
 // Slivers that TetGen itself left without volume, and those that rounding to float made, ask for different switches.
-std::string origin_of(const TetMeshDefect& defect, const TetgenOutput& output, const Rounding& rounding)
+std::string origin_of(const TetMeshDefect& defect, const RawTets& output, const Rounding& rounding)
 {
     if (defect.kind != Kind::inverted && defect.kind != Kind::flat) return "";
     const std::uint64_t left = rounding.damaged - rounding.repaired;
-    return fmt::format("; {} tets are flat or inverted: {} were so in TetGen's double coordinates already, the rest by "
+    return fmt::format("; {} tets are flat or inverted: {} were so in {}'s double coordinates already, the rest by "
                        "rounding to float",
-                       left, std::min(left, output.flat_tets));
+                       left, std::min(left, output.flat_tets), output.maker);
 }
 
-void require_sound(const Scene& scene, const TetgenOutput& output, const Rounding& rounding)
+void require_sound(const Scene& scene, const RawTets& output, const Rounding& rounding)
 {
     auto defect = find_defect(scene.tets, scene.mesh.triangles.size());
     const Double3 size = to_double(scene.domain.high()) - to_double(scene.domain.low());
     if (!defect) defect = find_gap(scene.tets, scene.mesh, size);
     if (!defect) return;
-    throw BuilderFailure(BUILDER_ABSURD_OUTPUT,
-                         fmt::format("checking TetGen's output: {}: {}{}; {}, or repair the mesh",
-                                     name_of(defect->kind), defect->what, origin_of(*defect, output, rounding),
-                                     try_other_switches));
+    throw BuilderFailure(BUILDER_ABSURD_OUTPUT, fmt::format("checking {}'s output: {}: {}{}; {}, or repair the mesh",
+                                                            output.maker, name_of(defect->kind), defect->what,
+                                                            origin_of(*defect, output, rounding), try_other_switches));
 }
 
 // What is wrong with the domain's sides; empty if they are sound.
@@ -235,11 +234,11 @@ std::string flaw_of_sides(const Scene& scene)
     }
 }
 
-void require_sound_sides(const Scene& scene)
+void require_sound_sides(const Scene& scene, const RawTets& output)
 {
     if (const std::string flaw = flaw_of_sides(scene); !flaw.empty())
-        throw BuilderFailure(BUILDER_ABSURD_OUTPUT, fmt::format("checking TetGen's output: the domain's sides: {}; {}",
-                                                                flaw, try_other_switches));
+        throw BuilderFailure(BUILDER_ABSURD_OUTPUT, fmt::format("checking {}'s output: the domain's sides: {}; {}",
+                                                                output.maker, flaw, try_other_switches));
 }
 
 void note_result(const OptimiserReport& report, const BuilderTalk& talk)
@@ -249,7 +248,7 @@ void note_result(const OptimiserReport& report, const BuilderTalk& talk)
                           report.seconds, report.rounds, report.cost_after, report.cost_before));
 }
 
-void optimise_for_rays(Scene& scene, const OptimiserLimits& limits, const BuilderTalk& talk)
+void optimise_for_rays(Scene& scene, std::string_view maker, const OptimiserLimits& limits, const BuilderTalk& talk)
 {
     OptimisedInfo& info = scene.build.optimised;
     info.effort = limits.effort;
@@ -277,7 +276,7 @@ void optimise_for_rays(Scene& scene, const OptimiserLimits& limits, const Builde
         note_result(result.report, talk);
     } else {
         info.cost_after = info.cost_before;
-        talk.note("TetGen's tets are used: " + info.reason);
+        talk.note(fmt::format("{}'s tets are used: {}", maker, info.reason));
     }
 }
 
@@ -355,7 +354,7 @@ PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& ta
     return prepared;
 }
 
-Scene finish_scene(PreparedScene prepared, const TetgenOutput& output, const BuilderTalk& talk)
+Scene finish_scene(PreparedScene prepared, const RawTets& output, const BuilderTalk& talk)
 {
     Scene scene = std::move(prepared.scene);
     talk.stage(fmt::format("converting and checking {} tets", output.tets.size()));
@@ -366,8 +365,8 @@ Scene finish_scene(PreparedScene prepared, const TetgenOutput& output, const Bui
             "{} tets flat or inverted after rounding to float, {} of them mended by moving {} Steiner points",
             rounding.damaged, rounding.repaired, rounding.moved_points));
     require_sound(scene, output, rounding);
-    require_sound_sides(scene);
-    if (scene.build.optimised.asked == TetsKind::rays) optimise_for_rays(scene, prepared.limits, talk);
+    require_sound_sides(scene, output);
+    if (scene.build.optimised.asked == TetsKind::rays) optimise_for_rays(scene, output.maker, prepared.limits, talk);
     scene.build.build_s = prepared.watch.seconds();
     return scene;
 }

@@ -5,8 +5,8 @@
 #include "core/mesh/scene.h"
 #include "core/mesh/triangle_mesh.h"
 #include "scenes/builder/convert_tets.h"
+#include "scenes/builder/raw_tets.h"
 #include "scenes/builder/repair/repair.h"
-#include "scenes/builder/run_tetgen.h"
 #include "scenes/optimise/optimise.h"
 
 #include <chrono>
@@ -34,10 +34,10 @@ struct BuilderOptions {
     std::string name; ///< empty: the mesh file's name without extension
     DomainKind domain = DomainKind::tight;
     std::uint32_t divisions = 8;
-    std::string switches = "pq5Y";
-    std::uint32_t order = 0; ///< in which TetGen gets the mesh (run_tetgen)
-    bool repair = false;     ///< cut triangles that cross
-    double weld = 0;         ///< repair: with at least this tolerance, domain units; 0: only where it must be
+    std::string switches = "pq5Y"; ///< TetGen's, or cgal_switches
+    std::uint32_t order = 0;       ///< in which TetGen gets the mesh (run_tetgen)
+    bool repair = false;           ///< cut triangles that cross
+    double weld = 0;               ///< repair: with at least this tolerance, domain units; 0: only where it must be
     TetsKind tets = TetsKind::cdt;
     int effort = default_effort; ///< of the optimiser, for TetsKind::rays
     bool mesh_only = false;      ///< no tets: the mesh is read, cleaned and placed in its domain
@@ -76,9 +76,9 @@ struct PreparedScene {
 /// may.
 [[nodiscard]] std::string objection_to(const OptimisedTets& result, const Scene& scene);
 
-/// Converts TetGen's output and checks it: structure, orientation, every input triangle covered, the domain filled, the
+/// Converts raw tets and checks them: structure, orientation, every input triangle covered, the domain filled, the
 /// entry grid complete. Throws BuilderFailure{BUILDER_ABSURD_OUTPUT} naming the check that failed. Then optimises the
-/// tets, if they are for rays; what that cannot improve, or what fails a check, stays TetGen's, with the reason.
-[[nodiscard]] Scene finish_scene(PreparedScene prepared, const TetgenOutput& output, const BuilderTalk& talk);
+/// tets, if they are for rays; what that cannot improve, or what fails a check, stays as it was, with the reason.
+[[nodiscard]] Scene finish_scene(PreparedScene prepared, const RawTets& output, const BuilderTalk& talk);
 
 } // namespace tetrace

@@ -127,15 +127,15 @@ std::array<std::uint64_t, 3> mend_tets(TetMesh& mesh, const std::vector<Freedom>
 
 namespace {
 
-constexpr double on_side = 1e-9; // TetGen's Steiner points on a side are this near to its plane, and no others
+constexpr double on_side = 1e-9; // Steiner points on a side are this near to its plane, and no others
 constexpr std::uint32_t surface_steps =
     2; // a Steiner point on an input triangle stays where rounding could have put it
 constexpr std::uint32_t interior_steps = 1 << 12; // one that only free faces share may go further
 
-[[noreturn]] void absurd(const std::string& what)
+[[noreturn]] void absurd(const RawTets& output, const std::string& what)
 {
-    throw BuilderFailure(BUILDER_ABSURD_OUTPUT,
-                         fmt::format("checking TetGen's output: {}; {}, or repair the mesh", what, try_other_switches));
+    throw BuilderFailure(BUILDER_ABSURD_OUTPUT, fmt::format("checking {}'s output: {}; {}, or repair the mesh",
+                                                            output.maker, what, try_other_switches));
 }
 
 using Triple = std::array<std::int32_t, 3>;
@@ -154,24 +154,25 @@ Triple face_of(const std::array<std::int32_t, 4>& tet, std::size_t face)
     return sorted(corners);
 }
 
-void require_indices(const TetgenOutput& output)
+void require_indices(const RawTets& output)
 {
     const auto points = static_cast<std::int32_t>(output.points.size());
     const auto tets = static_cast<std::int32_t>(output.tets.size());
-    if (output.tets.empty()) absurd("it is without tets");
-    if (output.tets.size() > MAX_TETS) absurd(fmt::format("{} tets are more than a link of 30 bits can name", tets));
+    if (output.tets.empty()) absurd(output, "it is without tets");
+    if (output.tets.size() > MAX_TETS)
+        absurd(output, fmt::format("{} tets are more than a link of 30 bits can name", tets));
     for (const auto& face : output.surface_faces)
         for (const std::int32_t corner : face.corners)
             if (corner < 0 || corner >= points)
-                absurd(fmt::format("a face of triangle {} names a vertex that is not there", face.triangle));
+                absurd(output, fmt::format("a face of triangle {} names a vertex that is not there", face.triangle));
     for (std::size_t i = 0; i < output.tets.size(); ++i)
         for (std::size_t k = 0; k < 4; ++k)
             if (output.tets[i][k] < 0 || output.tets[i][k] >= points || output.neighbours[i][k] < -1 ||
                 output.neighbours[i][k] >= tets)
-                absurd(fmt::format("tet {} names a vertex or a neighbour that is not there", i));
+                absurd(output, fmt::format("tet {} names a vertex or a neighbour that is not there", i));
 }
 
-std::uint32_t half_face_across(const TetgenOutput& output, std::size_t tet, std::size_t face)
+std::uint32_t half_face_across(const RawTets& output, std::size_t tet, std::size_t face)
 {
     const std::int32_t neighbour = output.neighbours[tet][face];
     if (neighbour < 0) return NO_HALF_FACE;
@@ -180,11 +181,12 @@ std::uint32_t half_face_across(const TetgenOutput& output, std::size_t tet, std:
         if (output.neighbours[other][i] == static_cast<std::int32_t>(tet) &&
             face_of(output.tets[other], i) == face_of(output.tets[tet], face))
             return make_half_face(static_cast<std::uint32_t>(neighbour), i);
-    absurd(fmt::format("asymmetric neighbours: tet {} has neighbour {} over face {}, which does not name it back", tet,
+    absurd(output,
+           fmt::format("asymmetric neighbours: tet {} has neighbour {} over face {}, which does not name it back", tet,
                        neighbour, face));
 }
 
-std::vector<Tet> connect(const TetgenOutput& output)
+std::vector<Tet> connect(const RawTets& output)
 {
     std::vector<Tet> tets(output.tets.size());
     for (std::size_t i = 0; i < tets.size(); ++i) {
@@ -197,7 +199,7 @@ std::vector<Tet> connect(const TetgenOutput& output)
     return tets;
 }
 
-std::vector<bool> surface_points(const TetgenOutput& output)
+std::vector<bool> surface_points(const RawTets& output)
 {
     std::vector<bool> found(output.points.size(), false);
     for (const auto& face : output.surface_faces)
@@ -207,7 +209,7 @@ std::vector<bool> surface_points(const TetgenOutput& output)
     return found;
 }
 
-void mark_faces(const TetgenOutput& output, std::vector<Tet>& tets)
+void mark_faces(const RawTets& output, std::vector<Tet>& tets)
 {
     std::unordered_map<Triple, std::int32_t, TripleHash> triangles;
     triangles.reserve(output.surface_faces.size());
@@ -234,18 +236,18 @@ void mark_faces(const TetgenOutput& output, std::vector<Tet>& tets)
         for (std::uint32_t face = 0; face < 4; ++face)
             look_up(tet, face);
     if (sides != 2 * triangles.size())
-        absurd(fmt::format("{} faces lie on input triangles, but tets have {} sides of them instead of {}",
-                           triangles.size(), sides, 2 * triangles.size()));
+        absurd(output, fmt::format("{} faces lie on input triangles, but tets have {} sides of them instead of {}",
+                                   triangles.size(), sides, 2 * triangles.size()));
 }
 
-double area(const TetgenOutput& output, const Triple& corners)
+double area(const RawTets& output, const Triple& corners)
 {
     const auto point = [&](std::size_t i) { return output.points[static_cast<std::size_t>(corners[i])]; };
     return length(cross(point(1) - point(0), point(2) - point(0))) / 2;
 }
 
 // In TetGen's own coordinates, in which a needle's area is not yet blurred by rounding.
-void require_coverage(const TetgenOutput& output, const TriangleMesh& triangles)
+void require_coverage(const RawTets& output, const TriangleMesh& triangles)
 {
     std::vector<double> covered(triangles.triangles.size(), 0.0);
     for (const auto& face : output.surface_faces)
@@ -262,11 +264,12 @@ void require_coverage(const TetgenOutput& output, const TriangleMesh& triangles)
     }
     if (count > 0)
         absurd(
+            output,
             fmt::format("missing input triangles: the faces on {} triangles do not add up to their areas (first: {})",
                         count, first));
 }
 
-// TetGen's tets are all of one orientation; core wants det < 0.
+// Raw tets are all of one orientation; core wants det < 0.
 void orient(std::vector<Tet>& tets)
 {
     const auto moved = [](std::uint32_t half_face) {
@@ -285,8 +288,7 @@ void orient(std::vector<Tet>& tets)
 // Rounded points, and how far each may move.
 class Points {
 public:
-    Points(const TetgenOutput& output, const Domain& domain, const std::vector<Tet>& tets)
-        : freedom(output.points.size())
+    Points(const RawTets& output, const Domain& domain, const std::vector<Tet>& tets) : freedom(output.points.size())
     {
         for (const Double3 point : output.points)
             rounded.push_back(snap_to_grid(to_float(point)));
@@ -341,8 +343,7 @@ void drop_unused(TetMesh& mesh)
 
 } // namespace
 
-TetMesh convert_tets(const TetgenOutput& output, const TriangleMesh& triangles, const Domain& domain,
-                     Rounding& rounding)
+TetMesh convert_tets(const RawTets& output, const TriangleMesh& triangles, const Domain& domain, Rounding& rounding)
 {
     require_indices(output);
     require_coverage(output, triangles);

@@ -2,7 +2,7 @@
 
 #include "core/mesh/domain.h"
 #include "core/mesh/tet_mesh.h"
-#include "scenes/builder/run_tetgen.h"
+#include "scenes/builder/raw_tets.h"
 
 #include <array>
 #include <cstdint>
@@ -30,12 +30,12 @@ struct Rounding {
     friend bool operator==(const Rounding&, const Rounding&) = default;
 };
 
-/// Makes a tet mesh of TetGen's output: half-faces from its neighbours, input triangles from its surface faces, the
+/// Makes a tet mesh of raw tets: half-faces from its neighbours, input triangles from its surface faces, the
 /// orientation of core/mesh/tet_mesh.h. Steiner points are rounded to float and grid; those on a side of the domain
 /// stay in its plane. Where rounding flattens or inverts a tet, floats near its Steiner points are tried; vertices of
 /// the input never move. What cannot be mended stays, for find_defect. Throws BuilderFailure{BUILDER_ABSURD_OUTPUT}
 /// where an index, a neighbour or a surface face is impossible.
-[[nodiscard]] TetMesh convert_tets(const TetgenOutput& output, const TriangleMesh& triangles, const Domain& domain,
+[[nodiscard]] TetMesh convert_tets(const RawTets& output, const TriangleMesh& triangles, const Domain& domain,
                                    Rounding& rounding);
 
 } // namespace tetrace

@@ -2,6 +2,8 @@
 #include "core/base/printable.h"
 #include "scenes/builder/build.h"
 #include "scenes/builder/failure.h"
+#include "scenes/builder/run_cgal.h"
+#include "scenes/builder/run_tetgen.h"
 #include "scenes/scene_file.h"
 
 #include <CLI/CLI.hpp>
@@ -113,7 +115,9 @@ std::optional<int> parse(int argc, char** argv, BuilderOptions& options)
     app.add_option("--divisions", options.divisions, "squares along each side of the domain, 1 to 64; default: 8")
         ->check(CLI::Range(1, 64).description(""))
         ->type_name("N");
-    app.add_option("--switches", options.switches, "TetGen's switches; default: pq5Y")->type_name("SWITCHES");
+    app.add_option("--switches", options.switches,
+                   "TetGen's switches, or cgal: CGAL makes the tets (6.1 and later); default: pq5Y")
+        ->type_name("SWITCHES");
     app.add_option("--order", options.order,
                    "N: give TetGen vertices and triangles in the Nth order at random; default: 0, as they are")
         ->type_name("N");
@@ -147,7 +151,7 @@ std::optional<int> parse(int argc, char** argv, BuilderOptions& options)
     app.footer("After SIGINT the optimiser ends, and what it has reached is checked and written.\n"
                "Exit codes: 0 good; 2 usage; 3 file missing; 4 internal; 5 bad mesh; 10 self-intersections; 11 TetGen "
                "refused;\n"
-               "12 TetGen's output failed a check; 13 out of memory.");
+               "12 its output failed a check; 13 out of memory.");
     try {
         app.parse(argc, argv);
         options.domain = domain == wide ? DomainKind::wide : DomainKind::tight;
@@ -182,7 +186,7 @@ void begin_limit(double seconds)
 {
     std::signal(SIGPROF, [](int) {
         constexpr std::string_view text =
-            "error: TetGen did not end within its share of the limit of time; allow more with "
+            "error: the tets were not made within their share of the limit of time; allow more with "
             "tetrace's --time-limit\n";
         [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
         ::_exit(BUILDER_TETGEN_REFUSED);
@@ -202,18 +206,24 @@ int main(int argc, char** argv)
     if (const auto code = parse(argc, argv, options)) return *code;
     PreparedScene prepared;
     int code = guarded([&] {
-        require_switches(options.switches);
+        if (options.switches != cgal_switches) require_switches(options.switches);
         require_out_folder(options.out);
         prepared = prepare_scene(options, talk());
     });
     if (code != BUILDER_GOOD) return code;
     if (options.mesh_only) return guarded([&] { write_mesh_only(options.out, prepared); });
 
-    say("stage", "TetGen " + options.switches);
     begin_limit(options.tetgen_for_s);
-    std::set_terminate(explain_tetgen_failure); // and the call is not inside a handler: see run_tetgen
-    const TetgenOutput output =
-        run_tetgen(prepared.scene.mesh, prepared.surface, prepared.points, options.switches, options.order);
+    RawTets output;
+    if (options.switches == cgal_switches) {
+        say("stage", "CGAL's tets");
+        code = guarded([&] { output = run_cgal(prepared.scene.mesh, prepared.surface, prepared.points); });
+        if (code != BUILDER_GOOD) return code;
+    } else {
+        say("stage", "TetGen " + options.switches);
+        std::set_terminate(explain_tetgen_failure); // and the call is not inside a handler: see run_tetgen
+        output = run_tetgen(prepared.scene.mesh, prepared.surface, prepared.points, options.switches, options.order);
+    }
     begin_limit(0);
     finish_when_interrupted(prepared);
     return guarded([&] {

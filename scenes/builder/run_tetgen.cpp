@@ -91,7 +91,7 @@ void rename(Indices& indices, const std::vector<std::uint32_t>& names)
 }
 
 // Back into the order that shuffled() changed.
-void restore_order(TetgenOutput& output, const std::vector<std::uint32_t>& vertices,
+void restore_order(RawTets& output, const std::vector<std::uint32_t>& vertices,
                    const std::vector<std::uint32_t>& triangles)
 {
     const auto inverse = [](const std::vector<std::uint32_t>& places) {
@@ -158,9 +158,9 @@ std::uint64_t count_flat(tetgenio& output)
     return flat;
 }
 
-TetgenOutput take(tetgenio& output, std::size_t input_points)
+RawTets take(tetgenio& output, std::size_t input_points)
 {
-    TetgenOutput result;
+    RawTets result;
     result.input_points = input_points;
     for (int i = 0; i < output.numberofpoints; ++i)
         result.points.push_back({output.pointlist[3 * i], output.pointlist[3 * i + 1], output.pointlist[3 * i + 2]});
@@ -223,8 +223,8 @@ void require_switches(const std::string& switches)
     if (!behavior.parse_commandline(text.data())) fail("is refused by TetGen");
 }
 
-TetgenOutput run_tetgen(const TriangleMesh& mesh, const TriangleMesh& surface, const std::vector<Float3>& points,
-                        const std::string& switches, std::uint32_t order)
+RawTets run_tetgen(const TriangleMesh& mesh, const TriangleMesh& surface, const std::vector<Float3>& points,
+                   const std::string& switches, std::uint32_t order)
 {
     // Not on the stack: if TetGen throws, nothing may be unwound.
     auto* const input = new tetgenio;
@@ -237,7 +237,7 @@ TetgenOutput run_tetgen(const TriangleMesh& mesh, const TriangleMesh& surface, c
     tetgenbehavior behavior;
     behavior.parse_commandline(text.data());
     tetrahedralize(&behavior, input, output, later);
-    TetgenOutput result = take(*output, static_cast<std::size_t>(input->numberofpoints));
+    RawTets result = take(*output, static_cast<std::size_t>(input->numberofpoints));
     restore_order(result, vertices, triangles);
     delete input;
     delete later;

@@ -112,7 +112,7 @@ TEST_F(Messages, compare_says_of_many_rows_at_once_what_holds_of_all)
     EXPECT_EQ(times_in(few.out, "fewer than 5 samples, so no interval: 3 in A and 3 in B"), 1u) << few.out;
     const Ended missing = run("compare few.json one.json");
     EXPECT_EQ(missing.code, 1);
-    EXPECT_EQ(times_in(missing.out, "B: no such row"), 1u) << missing.out;
+    EXPECT_EQ(times_in(missing.out, "MISSING: B: no such row"), 1u) << missing.out;
     EXPECT_EQ(times_in(missing.out, "Regressed"), 1u) << missing.out;
     EXPECT_TRUE(contains(missing.out, " rows are MISSING")) << missing.out;
 }

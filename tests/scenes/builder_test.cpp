@@ -274,7 +274,7 @@ TEST_F(BuilderProgram, ends_tetgen_at_its_limit_of_processor_time)
 {
     const auto ended = run_on(write("ball.off", to_off(sphere(6))), "--tetgen-for 0.001");
     EXPECT_EQ(ended.code, BUILDER_TETGEN_REFUSED);
-    EXPECT_TRUE(contains(ended.errors, "error: TetGen did not end within its share of the limit of time"));
+    EXPECT_TRUE(contains(ended.errors, "error: the tets were not made within their share of the limit of time"));
 }
 
 TEST_F(BuilderProgram, numbers_triangles_as_the_file_does_where_some_are_dropped)

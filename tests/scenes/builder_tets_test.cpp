@@ -3,6 +3,7 @@
 #include "core/base/exact.h"
 #include "scenes/builder/convert_tets.h"
 #include "scenes/builder/failure.h"
+#include "scenes/builder/run_cgal.h"
 #include "scenes/builder/run_tetgen.h"
 #include "tests/support/builder_meshes.h"
 #include "tests/support/sound_tets.h"
@@ -44,7 +45,7 @@ void expect_faces_inside_their_triangles(const Scene& scene)
 Scene build(const BuilderOptions& options, const BuilderTalk& talk = silence())
 {
     PreparedScene prepared = prepare_scene(options, talk);
-    const TetgenOutput output = run_tetgen(prepared.scene.mesh, prepared.surface, prepared.points, options.switches);
+    const RawTets output = run_tetgen(prepared.scene.mesh, prepared.surface, prepared.points, options.switches);
     return finish_scene(std::move(prepared), output, talk);
 }
 
@@ -128,10 +129,39 @@ protected:
 
     BuilderOptions options_;
     PreparedScene prepared_;
-    TetgenOutput output_;
+    RawTets output_;
 };
 
 } // namespace
+
+TEST_F(Builder, cgal_makes_tets_of_the_same_surface_where_it_can_and_says_that_it_cannot_elsewhere)
+{
+    const BuilderOptions asked = options(joined(sphere(1), sphere(1), 0.25f, 0.3f), DomainKind::tight, "cgal");
+    PreparedScene prepared = prepare_scene(asked, silence());
+    prepared.points = {{0.45f, 0.45f, 0.45f}};
+    const Scene before = prepared.scene;
+    RawTets output;
+    try {
+        output = run_cgal(before.mesh, prepared.surface, prepared.points);
+    } catch (const BuilderFailure& failure) {
+        EXPECT_EQ(failure.code(), BUILDER_TETGEN_REFUSED);
+        EXPECT_TRUE(contains(failure.what(), "makes no tets, 6.1 and later do")) << failure.what();
+        GTEST_SKIP() << failure.what();
+    }
+    EXPECT_EQ(output.input_points, before.mesh.vertices.size() + prepared.surface.vertices.size());
+    const Scene scene = finish_scene(std::move(prepared), output, silence());
+    expect_sound(scene);
+    expect_faces_inside_their_triangles(scene);
+    EXPECT_EQ(scene.mesh.triangles, before.mesh.triangles);
+    EXPECT_EQ(scene.build.switches, cgal_switches);
+    output.neighbours[0][0] = output.neighbours[0][0] < 1 ? 1 : 0;
+    try {
+        static_cast<void>(finish_scene(prepare_scene(asked, silence()), output, silence()));
+        ADD_FAILURE() << "damaged output passed";
+    } catch (const BuilderFailure& failure) {
+        EXPECT_TRUE(contains(failure.what(), "checking CGAL's output")) << failure.what();
+    }
+}
 
 TEST(SteinerRounding, mends_inverted_and_flat_tets_by_a_near_float)
 {

@@ -265,11 +265,29 @@ TEST_F(Load, tries_other_switches_where_tetgen_fails_on_tets_for_rays)
     EXPECT_TRUE(contains(loaded.messages.at(1), "with switches pY0/2/2 in order 1, at attempt 3"));
     const LoadedScene again = load();
     EXPECT_TRUE(again.from_cache);
-    EXPECT_TRUE(contains(again.messages.front(), "made with TetGen's switches pY0/2/2, since pY failed"));
+    EXPECT_TRUE(contains(again.messages.front(), "made with pY0/2/2, since TetGen's switches pY failed"));
     EXPECT_TRUE(contains(loaded.messages.at(2), "4 pairs of triangles crossed"));
     request.build.switches = "pYM"; // the user's own: no others are tried
     use_builder("case \"$*\" in *'--switches pYM '*) kill -SEGV $$;; esac");
     EXPECT_TRUE(contains(error_of([&] { (void)load(); }), "crashed (signal 11"));
+}
+
+TEST_F(Load, says_where_cgal_made_the_tets_that_tetgen_could_not)
+{
+    request.build = default_build(TetsKind::cdt);
+    request.build.divisions = 4;
+    Scene made = expected();
+    made.domain = make_cubes(4).domain;
+    made.build.switches = cgal_switches;
+    write_scene(prepared, made);
+    use_builder("case \"$*\" in *'--switches cgal '*) ;; *) exit 11;; esac");
+    const LoadedScene loaded = load();
+    EXPECT_EQ(loaded.scene.build.switches, cgal_switches);
+    EXPECT_TRUE(contains(loaded.messages.at(0), "TetGen failed with switches pq5Y (TetGen refused the mesh); trying"));
+    EXPECT_TRUE(contains(loaded.messages.at(1), "CGAL made the tets, at attempt "));
+    const LoadedScene again = load();
+    EXPECT_TRUE(again.from_cache);
+    EXPECT_TRUE(contains(again.messages.front(), "made by CGAL, since TetGen's switches pq5Y failed"));
 }
 
 TEST_F(Load, tries_all_other_ways_and_says_how_many_where_none_helps)
