@@ -101,7 +101,7 @@ private:
 /// Embree's occlusion query, which does not say what was hit: SOME_HIT. rays: GIVEN_RAY_QUADS per ray, as for
 /// Session::set_rays. hits: one per ray.
 void trace_given(const Accelerator& accelerator, Method method, const TraceJob& job, std::span<const Quad> rays,
-                 std::span<Hit> hits, unsigned threads);
+                 std::span<Hit> hits, SharedTiles& tiles);
 
 /// Rays of a stream. Occlusion queries sort a stream by octants, so more rays are better: with 64, shadow and ao rays
 /// have 0.92 to 0.99 of the rate that they have with 256; diffuse rays 0.98 to 1.02 (Embree 3.13, AVX-512).
@@ -177,14 +177,14 @@ Call call_of(Method method)
 }
 
 void trace_given(const Accelerator& accelerator, Method method, const TraceJob& job, std::span<const Quad> quads,
-                 std::span<tetrace::Hit> hits, unsigned threads)
+                 std::span<tetrace::Hit> hits, SharedTiles& tiles)
 {
     const std::size_t count = hits.size();
     const Rays rays{quads.first(count), quads.subspan(count, count), job.any_hit};
     const Call call = call_of(method);
-#pragma omp parallel for schedule(dynamic, 1024 / call.rays) num_threads(static_cast <int>(threads))
-    for (std::size_t ray = 0; ray < count; ray += call.rays)
-        call.trace(accelerator, rays, ray, hits);
+    tiles.take(static_cast<std::uint32_t>((count + call.rays - 1) / call.rays),
+               static_cast<std::uint32_t>(1024 / call.rays),
+               [&](std::uint32_t i) { call.trace(accelerator, rays, i * call.rays, hits); });
 }
 
 #include "kernels/rays_cpp.h"
@@ -277,31 +277,31 @@ TraceTile* trace_tile(Method method, unsigned native_width)
 } // namespace
 
 void trace_image(const Accelerator& accelerator, Method method, unsigned native_width, const TraceJob& job,
-                 std::span<tetrace::Hit> hits, unsigned threads)
+                 std::span<tetrace::Hit> hits, SharedTiles& shared)
 {
     const TraceParams params = params_of(job);
     const Image image{params, hits.data()};
     TraceTile* const trace = trace_tile(method, native_width);
     const std::uint32_t tiles_x = (job.width + tile_size - 1) / tile_size;
     const std::uint32_t tiles = tiles_x * ((job.height + tile_size - 1) / tile_size);
-#pragma omp parallel for schedule(dynamic, 4) num_threads(static_cast <int>(threads))
-    for (std::uint32_t tile = 0; tile < tiles; ++tile)
+    shared.take(tiles, 4, [&](std::uint32_t tile) {
         trace(accelerator, image, tile % tiles_x * tile_size, tile / tiles_x * tile_size);
+    });
 }
 
 EmbreeSession::EmbreeSession(const KernelId& kernel, unsigned native_width,
                              std::shared_ptr<const Accelerator> accelerator, unsigned threads)
-    : HostSession(kernel.task), kernel_(kernel), native_width_(native_width), accelerator_(std::move(accelerator)),
-      threads_(threads)
+    : HostSession(kernel.task, threads), kernel_(kernel), native_width_(native_width),
+      accelerator_(std::move(accelerator))
 {
 }
 
-void EmbreeSession::run(const TraceJob& job, std::span<std::uint32_t> output)
+void EmbreeSession::run(const TraceJob& job, std::span<std::uint32_t> output, SharedTiles& tiles)
 {
     if (kernel_.task == Task::rays)
-        trace_given(*accelerator_, kernel_.method, job, rays_, as_hits(output), threads_);
+        trace_given(*accelerator_, kernel_.method, job, rays_, as_hits(output), tiles);
     else
-        trace_image(*accelerator_, kernel_.method, native_width_, job, as_hits(output), threads_);
+        trace_image(*accelerator_, kernel_.method, native_width_, job, as_hits(output), tiles);
 }
 
 } // namespace tetrace::embree

@@ -19,17 +19,17 @@ public:
     [[nodiscard]] std::uint64_t bytes() const override { return accelerator_->bytes(); }
 
 private:
-    void run(const TraceJob& job, std::span<std::uint32_t> output) override;
+    void run(const TraceJob& job, std::span<std::uint32_t> output, SharedTiles& tiles) override;
 
     KernelId kernel_;
     unsigned native_width_;
     std::vector<Quad> rays_;
     std::shared_ptr<const Accelerator> accelerator_;
-    unsigned threads_;
 };
 
-/// Traces a whole image into hits, row after row. native_width: see Abilities.
+/// Traces what this thread takes of an image's tiles. hits: of the whole image, row after row. native_width: see
+/// Abilities.
 void trace_image(const Accelerator& accelerator, Method method, unsigned native_width, const TraceJob& job,
-                 std::span<Hit> hits, unsigned threads);
+                 std::span<Hit> hits, SharedTiles& shared);
 
 } // namespace tetrace::embree

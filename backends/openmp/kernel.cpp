@@ -41,27 +41,24 @@ tetrace::Hit answer(const Trace& trace_one)
 #endif
 }
 
-// Calls work with the scene, the launch and each pixel of an image, tile after tile, on the given number of threads.
+// Calls work with the scene, the launch and each pixel of the tiles that this thread takes of an image.
 template <class Work>
-void for_pixels(const tetrace::PackedScene& packed, const tetrace::TraceJob& job, unsigned threads,
+void for_pixels(const tetrace::PackedScene& packed, const tetrace::TraceJob& job, tetrace::SharedTiles& shared,
                 unsigned tile_height, const Work& work)
 {
     const SceneView scene = view_of(packed);
     const tetrace::LaunchParams image = launch_params(job, tetrace::domain_of(packed), tile_height, 0);
     const auto launch = std::bit_cast<LaunchParams>(image);
     const uint tiles = tetrace::tile_count(image);
-#pragma omp parallel num_threads(static_cast <int>(threads))
-    {
-        std::fenv_t environment;
-        std::fegetenv(&environment);
-        std::fesetenv(FE_DFL_ENV); // other libraries leave their threads flushing denormals
-#pragma omp for schedule(dynamic, 4)
-        for (uint tile = 0; tile < tiles; ++tile)
-            for (uint item = 0; item < TILE_WIDTH * launch.tile_height; ++item)
-                if (const Pixel pixel = pixel_of(launch, tile, item); is_in_image(launch, pixel))
-                    work(scene, launch, pixel);
-        std::fesetenv(&environment);
-    }
+    std::fenv_t environment;
+    std::fegetenv(&environment);
+    std::fesetenv(FE_DFL_ENV); // other libraries leave their threads flushing denormals
+    shared.take(tiles, 4, [&](uint tile) {
+        for (uint item = 0; item < TILE_WIDTH * launch.tile_height; ++item)
+            if (const Pixel pixel = pixel_of(launch, tile, item); is_in_image(launch, pixel))
+                work(scene, launch, pixel);
+    });
+    std::fesetenv(&environment);
 }
 
 } // namespace
@@ -72,10 +69,10 @@ void for_pixels(const tetrace::PackedScene& packed, const tetrace::TraceJob& job
 namespace tetrace::openmp {
 
 void FUNCTION(trace_, KERNEL_NAME)(const PackedScene& packed, std::span<const Quad>, const TraceJob& job,
-                                   std::span<std::uint32_t> output, unsigned threads, unsigned tile_height)
+                                   std::span<std::uint32_t> output, SharedTiles& shared, unsigned tile_height)
 {
     tetrace::Hit* const hits = as_hits(output).data();
-    for_pixels(packed, job, threads, tile_height,
+    for_pixels(packed, job, shared, tile_height,
                [&](const SceneView& scene, const ::LaunchParams& launch, Pixel pixel) {
                    hits[std::size_t{pixel.y} * launch.trace.width + pixel.x] =
                        answer([&] { return trace(scene, launch.trace, primary_ray(launch.trace, pixel.x, pixel.y)); });
@@ -84,11 +81,11 @@ void FUNCTION(trace_, KERNEL_NAME)(const PackedScene& packed, std::span<const Qu
 
 #ifdef TAKES_RAYS
 void FUNCTION(rays_, KERNEL_NAME)(const PackedScene& packed, std::span<const Quad> rays, const TraceJob& job,
-                                  std::span<std::uint32_t> output, unsigned threads, unsigned tile_height)
+                                  std::span<std::uint32_t> output, SharedTiles& shared, unsigned tile_height)
 {
     tetrace::Hit* const hits = as_hits(output).data();
     for_pixels(
-        packed, job, threads, tile_height, [&](const SceneView& scene, const ::LaunchParams& launch, Pixel pixel) {
+        packed, job, shared, tile_height, [&](const SceneView& scene, const ::LaunchParams& launch, Pixel pixel) {
             const uint ray = ray_index(pixel);
             hits[ray] =
                 answer([&] { return trace_given(scene, launch.trace, rays[ray], rays[ray_count(launch) + ray]); });
@@ -98,9 +95,9 @@ void FUNCTION(rays_, KERNEL_NAME)(const PackedScene& packed, std::span<const Qua
 
 #ifdef SEARCHES_EXITS
 void FUNCTION(search_, KERNEL_NAME)(const PackedScene& packed, std::span<const Quad> rays, const TraceJob& job,
-                                    std::span<std::uint32_t> output, unsigned threads, unsigned tile_height)
+                                    std::span<std::uint32_t> output, SharedTiles& shared, unsigned tile_height)
 {
-    for_pixels(packed, job, threads, tile_height,
+    for_pixels(packed, job, shared, tile_height,
                [&](const SceneView& scene, const ::LaunchParams& launch, Pixel pixel) {
                    const uint ray = ray_index(pixel);
                    const std::size_t count = ray_count(launch);

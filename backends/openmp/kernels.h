@@ -1,13 +1,14 @@
 #pragma once
 
 #include "core/device/backend.h"
+#include "core/device/team.h"
 
 namespace tetrace::openmp {
 
-/// Traces all rays of a job, tile after tile. rays: the quads of given rays, empty for task trace. output:
-/// words_per_ray() per ray, row after row.
+/// Traces what this thread takes of a job's tiles. rays: the quads of given rays, empty for task trace. output: of the
+/// whole job, words_per_ray() per ray, row after row.
 using RunFunction = void(const PackedScene& scene, std::span<const Quad> rays, const TraceJob& job,
-                         std::span<std::uint32_t> output, unsigned threads, unsigned tile_height);
+                         std::span<std::uint32_t> output, SharedTiles& shared, unsigned tile_height);
 
 /// One compiled kernel: a function per task, null for tasks that it does not have. CMake compiles kernel.cpp once for
 /// each kernel.

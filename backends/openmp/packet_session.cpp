@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 
+#include <omp.h>
 #include <sys/mman.h>
 
 #include <algorithm>
@@ -201,34 +202,19 @@ PacketJob packet_job(const PackedScene& scene, const std::uint32_t* records, con
     return result;
 }
 
-// Calls work on that many threads, with the floating-point settings of kernel.cpp's threads.
-template <class Work>
-void on_threads(unsigned threads, const Work& work)
-{
-#pragma omp parallel num_threads(static_cast <int>(threads))
-    {
-        std::fenv_t environment;
-        std::fegetenv(&environment);
-        std::fesetenv(FE_DFL_ENV);
-        work();
-        std::fesetenv(&environment);
-    }
-}
-
-// The share of an image's blocks of the thread that calls it.
-void trace_blocks(const PacketKernel& kernel, PacketJob job, std::span<Hit> hits)
+// What this thread takes of an image's blocks.
+void trace_blocks(const PacketKernel& kernel, PacketJob job, std::span<Hit> hits, SharedTiles& tiles)
 {
     const std::uint32_t across = (job.width + packet_block_size - 1) / packet_block_size;
     const std::uint32_t blocks = across * ((job.height + packet_block_size - 1) / packet_block_size);
     HitTile tile(hits, job.width, job.height);
     job.hits = reinterpret_cast<std::uint32_t*>(tile.hits().data());
-#pragma omp for schedule(dynamic, 1)
-    for (std::uint32_t block = 0; block < blocks; ++block) {
+    tiles.take(blocks, 1, [&](std::uint32_t block) {
         job.block_x = block % across * packet_block_size;
         job.block_y = block / across * packet_block_size;
         kernel.block(job);
         tile.store(job.block_x, job.block_y);
-    }
+    });
 }
 
 } // namespace
@@ -251,7 +237,7 @@ PacketKernel packet_kernel(unsigned lanes)
 }
 
 PacketSession::PacketSession(PacketKernel kernel, Task task, const PackedScene& scene, unsigned threads)
-    : HostSession(task), kernel_(kernel), task_(task), scene_(scene), threads_(threads)
+    : HostSession(task, threads), kernel_(kernel), task_(task), scene_(scene)
 {
     const Stopwatch watch;
     records_.reset(copy_of(scene.tets));
@@ -273,22 +259,25 @@ void PacketSession::set_rays(std::span<const Quad> quads)
     rays_end_ = std::ranges::any_of(origins, [](const Quad& quad) { return std::bit_cast<float>(quad.w) < NO_END; });
 }
 
-void PacketSession::run(const TraceJob& job, std::span<std::uint32_t> output)
+void PacketSession::run(const TraceJob& job, std::span<std::uint32_t> output, SharedTiles& tiles)
 {
     const Rays rays{scalar::view_of(scene_), scalar::params_of(job), rays_};
     PacketJob packets = packet_job(scene_, records_.get(), job, rays);
     packets.has_ends = rays_end_;
     packets.starts_outside = rays_start_outside_;
     packets.hits = output.data();
-    std::uint32_t next_ray = 0;
     packets.ray_count = job.width * job.height;
-    packets.next_ray = &next_ray;
-    on_threads(threads_, [&] {
-        if (task_ == Task::rays)
+    std::fenv_t environment; // as in kernel.cpp
+    std::fegetenv(&environment);
+    std::fesetenv(FE_DFL_ENV);
+    if (task_ == Task::rays)
+        tiles.share(static_cast<std::uint32_t>(omp_get_num_threads()), [&](std::uint32_t* next_ray) {
+            packets.next_ray = next_ray;
             kernel_.rays(packets);
-        else
-            trace_blocks(kernel_, packets, as_hits(output));
-    });
+        });
+    else
+        trace_blocks(kernel_, packets, as_hits(output), tiles);
+    std::fesetenv(&environment);
 }
 
 } // namespace tetrace::openmp

@@ -62,12 +62,11 @@ private:
         void operator()(void* block) const { std::free(block); }
     };
 
-    void run(const TraceJob& job, std::span<std::uint32_t> output) override;
+    void run(const TraceJob& job, std::span<std::uint32_t> output, SharedTiles& tiles) override;
 
     PacketKernel kernel_;
     Task task_;
     const PackedScene& scene_;
-    unsigned threads_;
     double copy_s_ = 0;
     std::vector<Quad> rays_;
     bool rays_end_ = false;                        ///< any of them

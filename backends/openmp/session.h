@@ -9,7 +9,7 @@ namespace tetrace::openmp {
 class OpenmpSession : public HostSession {
 public:
     OpenmpSession(RunFunction* function, Task task, const PackedScene& scene, unsigned threads, unsigned tile_height)
-        : HostSession(task), run_(function), scene_(scene), threads_(threads), tile_height_(tile_height)
+        : HostSession(task, threads), run_(function), scene_(scene), tile_height_(tile_height)
     {
     }
     void set_rays(std::span<const Quad> quads) override { rays_.assign(quads.begin(), quads.end()); }
@@ -17,15 +17,15 @@ public:
     [[nodiscard]] std::uint64_t bytes() const override { return scene_.bytes(); }
 
 private:
-    void run(const TraceJob& job, std::span<std::uint32_t> output) override
+    void run(const TraceJob& job, std::span<std::uint32_t> output, SharedTiles& tiles) override
     {
-        run_(scene_, rays_, job, output, threads_, tile_height_);
+        run_(scene_, rays_, job, output, tiles, tile_height_);
     }
 
     RunFunction* run_;
     const PackedScene& scene_;
     std::vector<Quad> rays_;
-    unsigned threads_, tile_height_;
+    unsigned tile_height_;
 };
 
 } // namespace tetrace::openmp

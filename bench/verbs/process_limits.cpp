@@ -1,18 +1,24 @@
 #include "bench/verbs/process_limits.h"
 
+#include "bench/measuring/machine_load.h"
+#include "bench/terminal/text.h"
 #include "core/base/control_groups.h"
 #include "core/base/error.h"
 
 #include <fmt/format.h>
 #include <omp.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <cctype>
+#include <cerrno>
 #include <charconv>
+#include <chrono>
 #include <cstdint>
 #include <cstdlib>
 #include <optional>
 #include <string>
+#include <thread>
 
 namespace tetrace {
 
@@ -69,6 +75,24 @@ void limit_threads()
     for (const char* const variable :
          {"OMP_NUM_THREADS", "LP_NUM_THREADS", "POCL_MAX_PTHREAD_COUNT", "POCL_CPU_MAX_CU_COUNT"})
         ::setenv(variable, text.c_str(), 0);
+}
+
+void start_again_if_busy(const std::vector<std::string>& arguments)
+{
+    if (std::getenv("GOMP_SPINCOUNT") != nullptr || std::getenv("OMP_WAIT_POLICY") != nullptr) return;
+    const LoadMeter meter;
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    const auto load = meter.load();
+    if (!load || load->is_quiet()) return;
+    ::setenv("GOMP_SPINCOUNT", "2000", 1);
+    say("tetrace: other processes use the processors; OpenMP's threads sleep while they wait (GOMP_SPINCOUNT=2000)");
+    std::string name = program_invocation_name;
+    std::vector<std::string> words = arguments;
+    std::vector<char*> argv{name.data()};
+    for (std::string& word : words)
+        argv.push_back(word.data());
+    argv.push_back(nullptr);
+    ::execv("/proc/self/exe", argv.data());
 }
 
 } // namespace tetrace

@@ -57,9 +57,9 @@ void HostSession::start(std::span<const TraceJob> jobs)
         throw std::bad_alloc();
     output_.assign(parts.words(), POISON);
     const Stopwatch watch;
-    for (std::uint32_t pass = 0; pass < jobs.front().passes; ++pass)
-        for (std::size_t job = 0; job < jobs.size(); ++job)
-            run(jobs[job], parts.results(std::span(output_), job));
+    on_team(threads_, jobs.front().passes, jobs.size(), [&](std::size_t job, SharedTiles& tiles) {
+        run(jobs[job], parts.results(std::span(output_), job), tiles);
+    });
     kernel_s_ = watch.seconds();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/device/backend.h"
+#include "core/device/team.h"
 
 #include <boost/align/aligned_allocator.hpp>
 
@@ -16,20 +17,22 @@ namespace tetrace {
 /// whose baseline has fused instructions.
 [[nodiscard]] bool host_has_fused_multiply();
 
-/// A session on the host's own processor and memory: launch() runs its jobs one after the other to the end, and wait()
-/// returns how long that took. A backend implements run() and the set-up.
+/// A session on threads of the host's own processor: launch() runs its jobs to the end, and wait() returns how long
+/// that took. A backend implements run() and the set-up.
 class HostSession : public Session {
 public:
-    explicit HostSession(Task task) : task_(task) {}
+    HostSession(Task task, unsigned threads) : task_(task), threads_(threads) {}
     [[nodiscard]] double wait() final { return kernel_s_; }
 
 private:
     void start(std::span<const TraceJob> jobs) final;
     void read_output(std::span<std::uint32_t> words) final;
-    /// Traces the whole image. output: words_per_ray() per ray, row after row.
-    virtual void run(const TraceJob& job, std::span<std::uint32_t> output) = 0;
+    /// Traces what this thread takes of the image's tiles; each thread calls it. output: of the whole image,
+    /// words_per_ray() per ray, row after row.
+    virtual void run(const TraceJob& job, std::span<std::uint32_t> output, SharedTiles& tiles) = 0;
 
     Task task_;
+    unsigned threads_;
     /// The first hit, after the guard, starts a cache line, as the first guard does.
     std::vector<std::uint32_t, boost::alignment::aligned_allocator<std::uint32_t, 64>> output_;
     double kernel_s_ = 0;
