@@ -82,7 +82,7 @@ struct Report {
 private:
     void begin(const std::string& text)
     {
-        if (text.starts_with("TetGen")) notes_on_mesh = notes;
+        if (text.starts_with("TetGen") || text.starts_with("CGAL")) notes_on_mesh = notes;
         stage = text;
         detail.clear();
         fraction = -1;
@@ -119,10 +119,10 @@ Ending ending_of_exit(int code)
             "leave out `--no-repair`, or repair the mesh so that its triangles meet only in shared edges and vertices",
             true};
     case BUILDER_TETGEN_REFUSED:
-        return {ErrorKind::invalid_input, "TetGen refused the mesh",
+        return {ErrorKind::invalid_input, "no tets could be made",
                 fmt::format("{}, or repair the mesh", try_other_switches), true};
     case BUILDER_ABSURD_OUTPUT:
-        return {ErrorKind::invalid_input, "TetGen's output failed the checks",
+        return {ErrorKind::invalid_input, "the tets failed the checks",
                 fmt::format("{}, or repair the mesh", try_other_switches), true};
     case BUILDER_OUT_OF_MEMORY:
         return {ErrorKind::invalid_input, "the builder ran out of memory", std::string(allow_more_memory), true};
@@ -324,8 +324,11 @@ BuildEnd build_scene(const fs::path& mesh, const fs::path& out, const std::strin
             notes.push_back(fmt::format("TetGen failed with switches {} ({}); trying others", failed.back(),
                                         ending_of(run.outcome, options).what));
         attempt = next;
+        Run another = run_attempt();
+        // Where CGAL fails too, or is too old, the reason is still TetGen's.
+        if (next.switches == cgal_switches && !another.is_good()) break;
         failed.push_back(text_of(attempt));
-        run = run_attempt();
+        run = std::move(another);
     }
     if (run.is_good() && failed.size() > 1)
         notes.push_back(fmt::format("{}, at attempt {}",
@@ -378,8 +381,8 @@ std::vector<TetsAttempt> fallback_attempts(const BuildOptions& options)
             all.push_back({order == 0 ? options.switches : careful, order, weld});
     for (std::uint32_t order = first_orders; order < all_orders; ++order)
         all.push_back({careful, order});
-    all.push_back({std::string(cgal_switches)});
-    all.push_back({"pMT1e-13"}); // last, so that the reason given in the end is TetGen's
+    all.push_back({"pMT1e-13"});
+    all.push_back({std::string(cgal_switches)}); // it does not end on most near layers, so it comes last
     return all;
 }
 

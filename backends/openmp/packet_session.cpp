@@ -3,7 +3,6 @@
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 
-#include <omp.h>
 #include <sys/mman.h>
 
 #include <algorithm>
@@ -271,7 +270,7 @@ void PacketSession::run(const TraceJob& job, std::span<std::uint32_t> output, Sh
     std::fegetenv(&environment);
     std::fesetenv(FE_DFL_ENV);
     if (task_ == Task::rays)
-        tiles.share(static_cast<std::uint32_t>(omp_get_num_threads()), [&](std::uint32_t* next_ray) {
+        tiles.share([&](std::uint32_t* next_ray) {
             packets.next_ray = next_ray;
             kernel_.rays(packets);
         });

@@ -65,4 +65,11 @@ std::string conformity_text(const RowRecord& row)
     }
 }
 
+bool fails_check(const RowRecord& row, bool flawed_passes)
+{
+    const Conformity conformity = conformity_of(row);
+    const bool is_method_s_own = conformity == Conformity::reference || conformity == Conformity::bit_exact;
+    return conformity == Conformity::not_exact || (!is_method_s_own && fails(row, flawed_passes));
+}
+
 } // namespace tetrace

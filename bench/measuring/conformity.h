@@ -30,4 +30,8 @@ inline constexpr auto enum_names<Conformity> = names_up_to<Conformity::error>("r
 /// Rows without anything to compare with show the oracle's status.
 [[nodiscard]] std::string conformity_text(const RowRecord& row);
 
+/// Whether the row makes a check fail; a row without an answer does not by itself (see exit_code and --require). Wrong
+/// and lost rays that openmp has bit for bit are the method's fault and not the device's. flawed_passes: as of fails().
+[[nodiscard]] bool fails_check(const RowRecord& row, bool flawed_passes);
+
 } // namespace tetrace

@@ -298,9 +298,9 @@ std::vector<std::uint32_t> counted_output(const RowRun& row, std::size_t view, s
     const auto rays = row.key.kernel.task == Task::rays
                           ? std::span<const Quad>(scene.given_rays().rows(scene, row.key, &packed, view))
                           : std::span<const Quad>();
-    on_team(threads, 1, 1, [&](std::size_t, SharedTiles& tiles) {
-        count(packed, rays, job_of(row, view), output, tiles, tile_height);
-    });
+    const TraceJob job = job_of(row, view);
+    on_team(threads, 1, 1,
+            [&](std::size_t, SharedTiles& tiles) { count(packed, rays, job, output, tiles, tile_height); });
     const std::span<const Hit> counted = as_hits(output);
     for (std::size_t ray = 0; ray < hits.size(); ++ray)
         if (!is_answer_of(counted[ray], hits[ray]))

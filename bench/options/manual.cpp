@@ -110,6 +110,8 @@ std::string man_page()
                   ".TP\n.B TMPDIR\nWhere they are during a run if that folder cannot be written to; by default /tmp.\n"
                   ".TP\n.B TETRACE_MESHES\nA folder with the catalogue's meshes, asked before the system's.\n"
                   ".TP\n.B OMP_NUM_THREADS\nHost threads, where \\-\\-threads is not given.\n"
+                  ".TP\n.B GOMP_SPINCOUNT, OMP_WAIT_POLICY\nHow OpenMP's threads wait. If neither is set and other "
+                  "processes use the processors, bench and reproduce set the first to 2000.\n"
                   ".TP\n.B NO_COLOR\nNo colours.\n";
 }
 

@@ -316,7 +316,7 @@ std::vector<OptionRow> judging_options()
          sharing, false, set_seconds("--budget", &Options::budget_s)},
         {"Judging", "--require", "BACKEND",
          "Fail with exit code 3 unless this backend has a usable device and, for 'check', has selected rows of "
-         "which none is skipped or unsupported.",
+         "which none is skipped or unsupported; 'devices' exits with 1 if a self-test of that backend fails.",
          bit(Verb::check) | bit(Verb::devices), true, append_backend("--require", &Options::required)},
         {"Judging", "--allow-flawed", "",
          "Exit with 0 even if maria, project or one of our BVHs has wrong rays on a device whose t, u or v differ from "

@@ -65,19 +65,27 @@ constexpr Renamed renamed[] = {{Verb::check, "--picture", "--differences"},
                                {Verb::report, "--picture", "--image"},
                                {Verb::inspect, "--require", "--require-target"}};
 
-/// What the first unknown option may have been meant to be.
-std::string guess(Verb verb, const std::vector<std::string>& arguments)
+/// What CLI11 could not place: the first unknown option, with what it may have been meant to be, or else the first
+/// word.
+std::string not_accepted(Verb verb, const std::vector<std::string>& arguments, const std::vector<std::string>& unplaced)
 {
     const auto accepted = accepted_options(verb);
     for (const std::string& argument : arguments) {
         const std::string name = argument.substr(0, argument.find('='));
-        if (!name.starts_with("--") || std::ranges::find(accepted, name) != accepted.end()) continue;
+        if (name.size() < 2 || !name.starts_with('-') || std::ranges::find(unplaced, argument) == unplaced.end())
+            continue;
         for (const Renamed& option : renamed)
             if (option.verb == verb && option.before == name)
-                return fmt::format("; {} of {} is now {}", name, name_of(verb), option.now);
-        return did_you_mean(name, accepted);
+                return fmt::format("{} of {} is now {}", name, name_of(verb), option.now);
+        return fmt::format("'{}' is not an option{}", name, did_you_mean(name, accepted));
     }
-    return {};
+    const auto first = std::ranges::find_if(arguments, [&](const std::string& argument) {
+        return std::ranges::find(unplaced, argument) != unplaced.end();
+    });
+    const std::string word = first != arguments.end() ? *first : "";
+    const bool takes_scenes = std::ranges::find(accepted, "--scene") != accepted.end();
+    return fmt::format("'{}' is not expected{}", word,
+                       takes_scenes && !word.starts_with('-') ? fmt::format("; a scene is '--scene {}'", word) : "");
 }
 
 [[noreturn]] void reject_command_line(Verb verb, const std::string& reason)
@@ -266,8 +274,10 @@ Options parse_verb(Verb verb, const std::vector<std::string>& arguments)
         options.verb = Verb::help;
         options.help_topic = name_of(verb);
         return options;
+    } catch (const CLI::ExtrasError&) {
+        reject_command_line(verb, not_accepted(verb, arguments, app.remaining()));
     } catch (const CLI::ParseError& problem) {
-        reject_command_line(verb, std::string(problem.what()).append(guess(verb, arguments)));
+        reject_command_line(verb, problem.what());
     }
     if (asks_for_rivals(verb, app)) options = defaults_of_rivals();
     for (const OptionRow& row : option_table())
@@ -325,15 +335,20 @@ Options parse_options(const std::vector<std::string>& arguments)
 {
     if (arguments.empty()) return {};
     const std::string& first = arguments.front();
-    const std::vector<std::string> rest(arguments.begin() + 1, arguments.end());
+    std::vector<std::string> rest(arguments.begin() + 1, arguments.end());
     Options options;
-    if (first == "--version") {
+    if (first == "--version" || first == "-V") {
         options.verb = Verb::version;
         return options;
     }
     if (first == "--help" || first == "-h" || first == "help") return parse_help(rest);
     for (const Verb verb : all_verbs())
-        if (name_of(verb) == first) return parse_verb(verb, rest);
+        if (name_of(verb) == first) {
+            const auto accepted = accepted_options(verb);
+            if (std::ranges::find(accepted, "--out") != accepted.end())
+                std::ranges::replace(rest, std::string("-o"), std::string("--out"));
+            return parse_verb(verb, rest);
+        }
     throw Error(ErrorKind::usage, fmt::format("'{}' is not a verb{}; accepted: {}, --help or --version\n"
                                               "'tetrace help' describes them",
                                               first, did_you_mean(first, names_of_verbs()), join_names(all_verbs())));

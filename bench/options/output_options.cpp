@@ -29,7 +29,7 @@ std::vector<OptionRow> output_options()
          "Write to the file PATH: the result, the picture of 'render', the page of 'report'. For 'dump' it is the "
          "folder of the files, and is required. Without --format, its extension sets a result's format: .json, .csv, "
          ".md, or .txt for the table; the table still goes to standard output. '-' means standard output instead of a "
-         "file. Default: none; of 'render' the current folder, of 'report' report.html.",
+         "file. -o is short for it. Default: none; of 'render' the current folder, of 'report' report.html.",
          reporting | bit(Verb::render) | bit(Verb::report) | bit(Verb::dump), false, set_out},
         {"Output", "--columns", "LIST",
          "Print only these columns, after the first one, in the tables that have them, named as in CSV and JSON: "

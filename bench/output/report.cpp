@@ -149,6 +149,9 @@ nlohmann::json result_head(const Options& options)
         if (!options.job.empty()) head["shard"]["job"] = options.job;
     }
     if (is_interrupted()) head["interrupted"] = true;
+    for (const char* const variable : {"OMP_WAIT_POLICY", "GOMP_SPINCOUNT"}) // the latter wins
+        if (const char* const value = std::getenv(variable))
+            head["waiting"] = printable_line(fmt::format("{}={}", variable, value));
     if (options.packet_lanes != 0) head["packet_lanes"] = options.packet_lanes;
     return head;
 }

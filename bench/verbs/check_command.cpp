@@ -34,6 +34,12 @@ struct Checked {
     std::unique_ptr<DifferencePictures> pictures;
 };
 
+/// Empty if the check was interrupted.
+std::optional<CheckVerdict> verdict_of(const Checked& checked, const Options& options)
+{
+    return is_interrupted() ? std::nullopt : verdict_of(checked.rows, options.allow_flawed, options.required);
+}
+
 nlohmann::json check_json(const Checked& checked, const Options& options)
 {
     nlohmann::json section = result_head(options);
@@ -43,6 +49,7 @@ nlohmann::json check_json(const Checked& checked, const Options& options)
     for (const RowRecord& row : checked.rows)
         section["rows"].push_back(row_json(check_facts(row)));
     section["missing_devices"] = checked.missing;
+    set_verdict(section, verdict_of(checked, options));
     return {{"tetrace", std::move(section)}};
 }
 
@@ -51,12 +58,17 @@ Report check_report(const Checked& checked, const Options& options)
     const auto& rows = checked.rows;
     Report report{check_sheet({&rows, checked.scenes, checked.missing, is_interrupted()}), check_table(rows),
                   check_json(checked, options)};
-    report.markdown = report.sheet.markdown({.columns = options.columns});
+    const auto verdict = verdict_of(checked, options);
+    const Sheet last = verdict ? verdict->line() : Sheet();
+    Sheet document = report.sheet;
+    document.append(last);
+    report.markdown = document.markdown({.columns = options.columns});
     if (checked.pictures != nullptr)
         for (const auto& file : checked.pictures->files())
             report.sheet.labelled("Picture", file.string());
     if (options.junit && !on_standard_output(options.junit)) report.sheet.labelled("JUnit", options.junit->string());
     if (options.out) report.sheet.labelled("Result", options.out->string());
+    report.sheet.append(last); // after the names of files
     return report;
 }
 
@@ -124,7 +136,7 @@ int check(const Options& options, Checked& checked)
     end_journal(journal.get(), options);
     require_judged(rows, options.required);
     require_answers(rows, "checked");
-    return exit_code(rows, [&](const RowRecord& row) { return fails_check(row, options); });
+    return exit_code(rows, [&](const RowRecord& row) { return fails_check(row, options.allow_flawed); });
 }
 
 int list_selected(const Options& options)
@@ -147,19 +159,12 @@ void require_judged(const std::vector<RowRecord>& rows, const std::vector<std::s
     }
 }
 
-bool fails_check(const RowRecord& row, const Options& options)
-{
-    const Conformity conformity = conformity_of(row);
-    const bool is_method_s_own = conformity == Conformity::reference || conformity == Conformity::bit_exact;
-    return conformity == Conformity::not_exact || (!is_method_s_own && fails(row, options.allow_flawed));
-}
-
 void write_junit(const std::vector<RowRecord>& rows, const Options& options, const std::string& problem)
 {
     if (!options.junit) return;
     std::vector<bool> failed;
     for (const RowRecord& row : rows)
-        failed.push_back(fails_check(row, options));
+        failed.push_back(fails_check(row, options.allow_flawed));
     std::string xml = junit_xml(rows, failed, problem);
     if (options.anonymous) xml = anonymous_text(xml, options);
     if (on_standard_output(options.junit))

@@ -31,9 +31,6 @@ int merge_command(const Options& options);
 [[nodiscard]] BenchResult run_bench(const std::vector<RowKey>& keys, const Options& options,
                                     const BenchmarkFlags& flags, Journal* journal);
 
-/// Whether the row fails `check`. A row without an answer does not fail by itself (see exit_code and --require).
-[[nodiscard]] bool fails_check(const RowRecord& row, const Options& options);
-
 /// Throws Error{missing} naming the first row of a required backend that has not been judged: all its rows were
 /// selected, but none ran.
 void require_judged(const std::vector<RowRecord>& rows, const std::vector<std::string>& backends);

@@ -232,6 +232,21 @@ void require_devices(const std::vector<std::string>& backends)
     }
 }
 
+namespace {
+
+void require_self_tests(const std::vector<std::string>& backends, const std::vector<ApiDevice>& devices)
+{
+    for (const ApiDevice& found : devices) {
+        const bool required = std::ranges::find(backends, backend_of(found)) != backends.end();
+        const bool has_none = !found.device.usable || found.self_test_text.empty();
+        if (!required || has_none || (found.self_test && found.self_test->is_exact())) continue;
+        throw Error(ErrorKind::driver, fmt::format("--require {}: {} is not exact: self-test: {}", backend_of(found),
+                                                   found.label, found.self_test_text));
+    }
+}
+
+} // namespace
+
 int devices_command(const Options& options)
 {
     check_output(options);
@@ -246,6 +261,7 @@ int devices_command(const Options& options)
     report.json = {{"tetrace", report.json}};
     deliver(options, report);
     require_devices(options.required);
+    require_self_tests(options.required, devices);
     return 0;
 }
 

@@ -93,6 +93,7 @@ void start_again_if_busy(const std::vector<std::string>& arguments)
         argv.push_back(word.data());
     argv.push_back(nullptr);
     ::execv("/proc/self/exe", argv.data());
+    ::unsetenv("GOMP_SPINCOUNT");
 }
 
 } // namespace tetrace

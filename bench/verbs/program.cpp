@@ -130,7 +130,8 @@ int run_program(const std::vector<std::string>& arguments)
         limit_threads();
         const Options options = parse_options(arguments);
         check_stacks();
-        if (options.verb == Verb::bench || options.verb == Verb::reproduce) start_again_if_busy(arguments);
+        const bool is_timed = options.verb == Verb::bench || options.verb == Verb::reproduce;
+        if (is_timed && !options.list && options.threads != 1 && !this_rank()) start_again_if_busy(arguments);
         const auto cache = cache_of(options.verb);
         set_isolation(options.isolation, options.driver_limit_s);
         return run_verb_or_rank(options);

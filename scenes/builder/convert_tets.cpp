@@ -246,7 +246,7 @@ double area(const RawTets& output, const Triple& corners)
     return length(cross(point(1) - point(0), point(2) - point(0))) / 2;
 }
 
-// In TetGen's own coordinates, in which a needle's area is not yet blurred by rounding.
+// In double coordinates, in which a needle's area is not yet blurred by rounding.
 void require_coverage(const RawTets& output, const TriangleMesh& triangles)
 {
     std::vector<double> covered(triangles.triangles.size(), 0.0);

@@ -128,8 +128,9 @@ std::optional<int> parse(int argc, char** argv, BuilderOptions& options)
                    "has 1 to 2; default: 0, only if an exact repair never ends")
         ->check(CLI::Range(0.0, weld_tolerances.back()).description(""))
         ->type_name("T");
-    app.add_option("--tetgen-for", options.tetgen_for_s,
-                   "TetGen has failed if it takes more than this many seconds of processor time; default: 0, no limit")
+    app.add_option(
+           "--tetgen-for", options.tetgen_for_s,
+           "the tets cannot be made if that takes more than this many seconds of processor time; default: 0, no limit")
         ->check(CLI::Range(0.0, 1e6).description(""))
         ->type_name("S");
     app.add_flag("--mesh-only", options.mesh_only,
@@ -149,9 +150,9 @@ std::optional<int> parse(int argc, char** argv, BuilderOptions& options)
         ->check(CLI::Range(0.0, 1e6).description(""))
         ->type_name("S");
     app.footer("After SIGINT the optimiser ends, and what it has reached is checked and written.\n"
-               "Exit codes: 0 good; 2 usage; 3 file missing; 4 internal; 5 bad mesh; 10 self-intersections; 11 TetGen "
-               "refused;\n"
-               "12 its output failed a check; 13 out of memory.");
+               "Exit codes: 0 good; 2 usage; 3 file missing; 4 internal; 5 bad mesh; 10 self-intersections; 11 no "
+               "tets could be made;\n"
+               "12 the tets failed a check; 13 out of memory.");
     try {
         app.parse(argc, argv);
         options.domain = domain == wide ? DomainKind::wide : DomainKind::tight;

@@ -11,6 +11,7 @@
 #include <bit>
 #include <exception>
 #include <map>
+#include <new>
 #include <unordered_map>
 
 // Source of the method: Alliez, Rineau, Tournois, Cohen-Steiner et al., CGAL's package Constrained_triangulation_3.
@@ -126,6 +127,8 @@ RawTets run_cgal(const TriangleMesh& mesh, const TriangleMesh& surface, const st
     try {
         const Triangulation made(input.points, input.triangles);
         return take(input, surface_points, mesh.triangles.size(), made);
+    } catch (const std::bad_alloc&) {
+        throw;
     } catch (const std::exception& failure) {
         const std::string_view all = failure.what();
         throw BuilderFailure(BUILDER_TETGEN_REFUSED, fmt::format("CGAL gave up: {}; {}, or repair the mesh",

@@ -14,7 +14,7 @@ protected:
     void break_opencl() const { write_file(folder_ / "vendors/broken.icd", TETRACE_ABORTING_DRIVER "\n"); }
     [[nodiscard]] std::string vendors() const { return (folder_ / "vendors").string(); }
 
-    [[nodiscard]] bool has(const std::string& backends) { return run("devices --require " + backends).code == 0; }
+    [[nodiscard]] bool has(const std::string& backends) { return run("devices --require " + backends).code <= 1; }
 
     /// The verb on openmp and OpenCL, whose drivers misbehave.
     Ended run_faulty(const std::string& fault, const std::string& arguments)
@@ -67,6 +67,16 @@ TEST_F(DriverFaults, devices_are_listed_next_to_a_driver_that_crashes_at_load)
 }
 
 #ifdef TETRACE_FAULTY_OPENCL
+TEST_F(DriverFaults, required_device_whose_self_test_fails_is_exit_code_1)
+{
+    if (!has("opencl")) GTEST_SKIP() << "an OpenCL device is missing";
+    const ScopedVariable faulty("FAULTY_OPENCL", "build:1 abort"), preload("LD_PRELOAD", TETRACE_FAULTY_OPENCL);
+    EXPECT_EQ(run("devices").code, 0);
+    const Ended ended = run("devices --require openmp,opencl");
+    EXPECT_EQ(ended.code, 1) << ended.out << ended.errors;
+    EXPECT_TRUE(contains(ended.errors, "--require opencl: opencl is not exact: self-test: failed: ")) << ended.errors;
+}
+
 TEST_F(DriverFaults, driver_that_ends_at_any_call_ends_its_row_and_openmps_goes_on)
 {
     if (!has("opencl")) GTEST_SKIP() << "an OpenCL device is missing";
@@ -84,6 +94,7 @@ TEST_F(DriverFaults, driver_that_ends_at_any_call_ends_its_row_and_openmps_goes_
         EXPECT_TRUE(contains(ended.out, "the driver of opencl (")) << fault;
         EXPECT_TRUE(contains(ended.out, reason)) << fault << ended.errors;
         EXPECT_TRUE(contains(ended.out, "Verified  576 rays")) << fault; // openmp's
+        EXPECT_TRUE(ended.out.ends_with("FAILED    1 of 2 rows, on opencl.\n")) << ended.out;
     }
 }
 

@@ -1,8 +1,9 @@
 #include "bench/output/junit.h"
 
+#include "bench/measuring/conformity.h"
 #include "bench/measuring/view_recorder.h"
+#include "bench/show/show_report.h"
 #include "bench/terminal/text.h"
-#include "bench/verbs/commands.h"
 #include "scenes/procedural.h"
 #include "tests/support/temporary_folder.h"
 
@@ -121,23 +122,51 @@ TEST(Junit, a_flaw_of_a_method_on_a_bit_exact_device_passes_and_is_named)
     result.verdicts.wrong = 3;
     row.outcome = result;
     ASSERT_EQ(status_of(row), Status::flawed);
-    EXPECT_FALSE(fails_check(row, {}));
-    const std::string xml = junit_xml({row}, {fails_check(row, {})});
+    EXPECT_FALSE(fails_check(row, false));
+    const std::string xml = junit_xml({row}, {fails_check(row, false)});
     EXPECT_TRUE(contains(xml, "failures=\"0\" errors=\"0\""));
     EXPECT_TRUE(contains(xml, "conformity: bit-exact\nflawed: 3 wrong")) << xml;
 
     result.verdicts.lost = 1;
     row.outcome = result;
-    EXPECT_FALSE(fails_check(row, {})) << "openmp's is lost, too";
+    EXPECT_FALSE(fails_check(row, false)) << "openmp's is lost, too";
     result.compared = false;
     row.outcome = result;
-    EXPECT_FALSE(fails_check(row, {})) << "the reference has the method's flaws";
+    EXPECT_FALSE(fails_check(row, false)) << "the reference has the method's flaws";
     result.compared = true;
     result.inexact = 1;
     row.outcome = result;
-    EXPECT_TRUE(fails_check(row, {})) << "the device may be at fault";
+    EXPECT_TRUE(fails_check(row, false)) << "the device may be at fault";
     result.inexact = 0;
     result.different = 1;
     row.outcome = result;
-    EXPECT_TRUE(fails_check(row, {}));
+    EXPECT_TRUE(fails_check(row, false));
+}
+
+TEST(CheckVerdict, says_in_a_line_whether_the_devices_conform_and_which_do_not)
+{
+    const auto text = [](const std::vector<RowRecord>& rows, const std::vector<std::string>& required = {}) {
+        const auto verdict = verdict_of(rows, false, required);
+        return verdict ? verdict->line().text() : "";
+    };
+    RowRecord good = skipped_row("");
+    Traced result;
+    result.compared = true;
+    good.outcome = result;
+    RowRecord other = good, wrong = good, failed = good;
+    other.key.backend = "vulkan";
+    wrong.key.backend = "vulkan";
+    result.different = 1;
+    wrong.outcome = result;
+    failed.outcome = Failed{ErrorKind::driver, "device lost"};
+    const std::string device = device_label(good.key);
+    EXPECT_EQ(text({good}), "Conforms  1 row on 1 device.\n");
+    EXPECT_EQ(text({good, good, other}), "Conforms  3 rows on 2 devices.\n");
+    EXPECT_EQ(text({good, skipped_row("")}), "Conforms  1 row on 1 device; 1 more has no result.\n");
+    EXPECT_EQ(text({good, skipped_row("")}, {good.key.backend}),
+              fmt::format("FAILED    1 of 2 rows, on {}.\n", device));
+    EXPECT_EQ(text({good, wrong, other}), "FAILED    1 of 3 rows, on vulkan.\n");
+    EXPECT_EQ(text({good, wrong, wrong}), "FAILED    2 of 3 rows, all on vulkan.\n");
+    EXPECT_EQ(text({failed, wrong, good}), fmt::format("FAILED    2 of 3 rows, on {}, vulkan.\n", device));
+    EXPECT_EQ(text({skipped_row("")}), "");
 }

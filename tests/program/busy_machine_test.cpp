@@ -29,7 +29,8 @@ protected:
         return ended;
     }
 
-    const ScopedVariable unset_{"OMP_WAIT_POLICY", static_cast<const char*>(nullptr)}; // which tests set
+    const ScopedVariable policy_{"OMP_WAIT_POLICY", static_cast<const char*>(nullptr)}; // which tests set
+    const ScopedVariable spins_{"GOMP_SPINCOUNT", static_cast<const char*>(nullptr)};
 };
 
 class BusyMachineRatios : public BusyMachine {
@@ -57,8 +58,11 @@ TEST_F(BusyMachine, lets_openmps_threads_sleep_while_they_wait_unless_the_user_d
     EXPECT_EQ(busy.code, 0) << busy.errors;
     ASSERT_TRUE(contains(busy.errors, note)) << busy.errors;
     EXPECT_EQ(busy.errors.find(note), busy.errors.rfind(note)) << busy.errors;
+    EXPECT_TRUE(contains(busy.out, "cdt maria tet80")) << busy.out;
     const ScopedVariable by_the_user("GOMP_SPINCOUNT", "30000");
-    EXPECT_FALSE(contains(run_beside(2, bench).errors, note));
+    const Ended decided = run_beside(2, bench);
+    EXPECT_EQ(decided.code, 0) << decided.errors;
+    EXPECT_FALSE(contains(decided.errors, note));
 }
 
 // Not among the tests of each commit: machines are busy by themselves. While threads waited for each other at the end

@@ -33,12 +33,19 @@ TEST(Options, without_arguments_help_is_asked_for)
     EXPECT_EQ(parse_options({"bench", "--help"}).help_topic, "bench");
     EXPECT_EQ(parse_options({"help", "build"}).help_topic, "build");
     EXPECT_EQ(parse_options({"--version"}).verb, Verb::version);
+    EXPECT_EQ(parse_options({"-V"}).verb, Verb::version);
+    EXPECT_EQ(parse_options({"-h"}).verb, Verb::help);
+    EXPECT_EQ(parse_options({"check", "-h"}).help_topic, "check");
+    EXPECT_EQ(parse_options({"bench", "-o", "r.json"}).words, parse_options({"bench", "--out", "r.json"}).words);
 }
 
 TEST(Options, slips_of_the_hand_get_a_guess)
 {
     EXPECT_TRUE(contains(rejection({"bench", "--smaples", "3"}), "; did you mean --samples?"));
     EXPECT_TRUE(contains(rejection({"bench", "--scne=bunny"}), "; did you mean --scene?"));
+    EXPECT_TRUE(
+        contains(rejection({"bench", "bunny", "--scen"}), "bench: '--scen' is not an option; did you mean --scene?"));
+    EXPECT_TRUE(contains(rejection({"bench", "-s", "3"}), "bench: '-s' is not an option\n"));
     EXPECT_TRUE(contains(rejection({"becnh"}), "'becnh' is not a verb; did you mean bench?"));
     EXPECT_FALSE(contains(rejection({"bench", "--colour"}), "did you mean"));
     EXPECT_FALSE(contains(rejection({"draw"}), "did you mean"));
@@ -286,7 +293,8 @@ TEST(Options, files_stand_between_options_wherever_they_are_given)
     EXPECT_EQ(parse_options({"report", "--image", "a.png,b.png", "a.json"}).report_pictures,
               (std::vector<std::filesystem::path>{"a.png", "b.png"}));
     EXPECT_TRUE(contains(rejection({"report"}), "no file is given"));
-    EXPECT_TRUE(contains(rejection({"bench", "--size", "8", "9"}), "not expected: 9"));
+    EXPECT_TRUE(
+        contains(rejection({"bench", "--size", "8", "9"}), "bench: '9' is not expected; a scene is '--scene 9'"));
 }
 
 TEST(Options, each_name_has_one_meaning_and_a_former_name_is_answered_with_the_new_one)

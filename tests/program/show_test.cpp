@@ -12,10 +12,13 @@ namespace {
 /// `tetrace show`: results printed again, and several side by side.
 class Show : public ProgramTest {
 protected:
-    /// What `show` prints after the line that names the run, and what the run printed before the line that names the
+    /// What `show` prints after the line that names the run, and what the run printed without the line that names the
     /// file.
     static std::string without_head(const std::string& text) { return text.substr(text.find("\n\n") + 2); }
-    static std::string without_result(const std::string& text) { return text.substr(0, text.find("Result    ")); }
+    static std::string without_result(const std::string& text)
+    {
+        return std::regex_replace(text, std::regex("Result    [^\n]*\n"), "");
+    }
 
     void expect_the_same(const std::string& arguments)
     {

@@ -89,8 +89,8 @@ TEST_F(Load, maps_each_exit_code_to_its_own_error)
                  {BUILDER_MISSING_FILE, "missing: ", "a file is missing"},
                  {BUILDER_INTERNAL, "internal: ", "its own fault"},
                  {BUILDER_SELF_INTERSECTION, "invalid_input: ", "the mesh intersects itself"},
-                 {BUILDER_TETGEN_REFUSED, "invalid_input: ", "TetGen refused the mesh"},
-                 {BUILDER_ABSURD_OUTPUT, "invalid_input: ", "TetGen's output failed the checks"},
+                 {BUILDER_TETGEN_REFUSED, "invalid_input: ", "no tets could be made"},
+                 {BUILDER_ABSURD_OUTPUT, "invalid_input: ", "the tets failed the checks"},
                  {BUILDER_OUT_OF_MEMORY, "invalid_input: ", "the builder ran out of memory"},
                  {77, "internal: ", "exit code 77"}};
     for (const auto& c : cases) {
@@ -148,7 +148,7 @@ TEST_F(Load, gives_only_the_mesh_if_only_tetgen_fails_and_the_mesh_is_enough)
     request.build.repair = false;
     for (const int code : {BUILDER_BAD_MESH, BUILDER_INTERNAL, BUILDER_USAGE})
         EXPECT_NE(error_with(alone + "exit " + std::to_string(code)), "") << "not TetGen's fault";
-    EXPECT_TRUE(contains(error_with("exit " + std::to_string(BUILDER_TETGEN_REFUSED)), "TetGen refused the mesh"))
+    EXPECT_TRUE(contains(error_with("exit " + std::to_string(BUILDER_TETGEN_REFUSED)), "no tets could be made"))
         << "and the mesh by itself fails, too";
 }
 
@@ -283,7 +283,7 @@ TEST_F(Load, says_where_cgal_made_the_tets_that_tetgen_could_not)
     use_builder("case \"$*\" in *'--switches cgal '*) ;; *) exit 11;; esac");
     const LoadedScene loaded = load();
     EXPECT_EQ(loaded.scene.build.switches, cgal_switches);
-    EXPECT_TRUE(contains(loaded.messages.at(0), "TetGen failed with switches pq5Y (TetGen refused the mesh); trying"));
+    EXPECT_TRUE(contains(loaded.messages.at(0), "TetGen failed with switches pq5Y (no tets could be made); trying"));
     EXPECT_TRUE(contains(loaded.messages.at(1), "CGAL made the tets, at attempt "));
     const LoadedScene again = load();
     EXPECT_TRUE(again.from_cache);
@@ -297,10 +297,9 @@ TEST_F(Load, tries_all_other_ways_and_says_how_many_where_none_helps)
     const std::string refused = std::to_string(BUILDER_TETGEN_REFUSED);
     const std::string error = error_with("exit " + refused);
     const auto attempts = fallback_attempts(request.build);
-    EXPECT_TRUE(
-        contains(error, fmt::format("with switches pq5Y and {} other ways, the last pMT1e-13: TetGen refused the "
-                                    "mesh",
-                                    attempts.size())))
+    EXPECT_TRUE(contains(error, fmt::format("with switches pq5Y and {} other ways, the last pMT1e-13: no tets could be "
+                                            "made",
+                                            attempts.size() - 1)))
         << error;
     EXPECT_EQ(attempts.front(), (TetsAttempt{"pq5Y0/2/2"}));
     BuildOptions rays = default_build(TetsKind::rays);
