@@ -205,7 +205,8 @@ TEST_F(Messages, verdicts_of_a_check_are_there_on_a_terminal_of_any_width)
         std::istringstream lines(screen);
         for (std::string line; std::getline(lines, line);) {
             line.erase(line.find_last_not_of('\r') + 1);
-            EXPECT_LE(line.size(), std::stoul(columns)) << line;
+            const bool is_one_word = line.find(' ') == std::string::npos; // such as the name of a row
+            EXPECT_TRUE(is_one_word || line.size() <= std::stoul(columns)) << line;
         }
         for (const char* const title : {"  openmp", "  cuda-host", "  embree", "  wrong  lost", "  self-test"})
             EXPECT_TRUE(contains(screen, title)) << screen;
