@@ -174,10 +174,12 @@ Error failure(const std::string& doing, const Ending& ending, const Report& repo
     const std::string looked = given != nullptr && *given != '\0'
                                    ? fmt::format("TETRACE_BUILDER names {}, which cannot be executed", given)
                                    : fmt::format("program {} is neither next to this one nor in PATH", builder_name);
-    throw Error(ErrorKind::missing,
-                fmt::format("building scene {}: {}; install the packages libtet1.5-dev and libcgal-dev "
-                            "and build tetrace again, or let TETRACE_BUILDER name the program",
-                            label, looked));
+    throw Error(
+        ErrorKind::missing,
+        fmt::format(
+            "building scene {}: {}; install the packages libtet1.5-dev (libtet-dev after Debian 13) and libcgal-dev "
+            "and build tetrace again, or let TETRACE_BUILDER name the program",
+            label, looked));
 }
 
 /// The meshes that runs of the builder leave for those after them, beside the scene that is made, one for each

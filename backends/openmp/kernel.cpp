@@ -52,8 +52,8 @@ void for_pixels(const tetrace::PackedScene& packed, const tetrace::TraceJob& job
     const uint tiles = tetrace::tile_count(image);
     std::fenv_t environment;
     std::fegetenv(&environment);
-    std::fesetenv(FE_DFL_ENV); // other libraries leave their threads flushing denormals
-    shared.take(tiles, 4, [&](uint tile) {
+    std::fesetenv(FE_DFL_ENV);                                // other libraries leave their threads flushing denormals
+    shared.take(tiles, 4, [&work, scene, launch](uint tile) { // by value: bvh4 gains 2 %
         for (uint item = 0; item < TILE_WIDTH * launch.tile_height; ++item)
             if (const Pixel pixel = pixel_of(launch, tile, item); is_in_image(launch, pixel))
                 work(scene, launch, pixel);

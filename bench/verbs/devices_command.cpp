@@ -206,7 +206,7 @@ std::vector<Part> parts()
 {
     const auto folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
     return {{"builder", !find_builder().empty(), "reads meshes, makes scenes",
-             "install libtet1.5-dev and libcgal-dev, configure and build again"},
+             "install libtet1.5-dev (libtet-dev after Debian 13) and libcgal-dev, configure and build again"},
             {"images", std::filesystem::exists(folder / "tetrace_images.so"), "writes pictures",
              "install libopenimageio-dev, configure and build again"}};
 }

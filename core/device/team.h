@@ -17,12 +17,14 @@ public:
     template <class Work>
     void take(std::uint32_t tiles, std::uint32_t at_once, const Work& work)
     {
-        share([&](std::uint32_t* next) {
-            const std::atomic_ref<std::uint32_t> first_left(*next);
-            for (std::uint32_t first; (first = first_left.fetch_add(at_once, std::memory_order_relaxed)) < tiles;)
-                for (std::uint32_t tile = first; tile < std::min(tiles, first + at_once); ++tile)
-                    work(tile);
-        });
+        enter();
+        const std::atomic_ref<std::uint32_t> next(next_);
+        for (std::uint32_t first; (first = next.fetch_add(at_once, std::memory_order_relaxed)) < tiles;) {
+            const std::uint32_t end = std::min(tiles, first + at_once);
+            for (std::uint32_t tile = first; tile < end; ++tile)
+                work(tile);
+        }
+        leave();
     }
 
     /// Calls work(next), which takes its work by adding to *next, 0 at first, and returns when none is left to take.
