@@ -220,7 +220,7 @@ std::vector<std::string> arguments_of(const fs::path& mesh, const fs::path& out,
         "--tetgen-for",   fmt::format("{:g}", tetgen_share * options.time_limit_s),
         "--optimise-for", fmt::format("{:g}", options.optimise_s > 0 ? options.optimise_s : options.time_limit_s / 2)};
     if (options.repair) arguments.insert(arguments.end(), {"--repair", "--weld", fmt::format("{}", attempt.weld)});
-    arguments.insert(arguments.end(), {"--prepared", prepared.string()});
+    if (!prepared.empty()) arguments.insert(arguments.end(), {"--prepared", prepared.string()});
     return arguments;
 }
 
@@ -365,6 +365,20 @@ BuildEnd build_scene(const fs::path& mesh, const fs::path& out, const std::strin
     if (!second.is_good()) throw error;
     add_notes(second);
     return {second.outcome.interrupted, error};
+}
+
+void build_mesh_only(const fs::path& mesh, const fs::path& out, const std::string& label, const BuildOptions& options,
+                     const Progress& progress, std::vector<std::string>& notes)
+{
+    const fs::path builder = find_builder();
+    if (builder.empty()) fail_without_builder(label);
+    auto arguments = arguments_of(mesh, out, {}, label, options, {options.switches});
+    arguments.emplace_back("--mesh-only");
+    const Run run = run_builder(builder, arguments, label, options, progress);
+    if (!run.is_good())
+        throw failure(fmt::format("reading the mesh of {} from {}", label, mesh.string()),
+                      ending_of(run.outcome, options), run.report, run.outcome.wall_s);
+    notes.insert(notes.end(), run.report.notes.begin(), run.report.notes.end());
 }
 
 std::vector<TetsAttempt> fallback_attempts(const BuildOptions& options)

@@ -50,4 +50,9 @@ struct BuildEnd {
                                    const std::string& label, const BuildOptions& options, const Progress& progress,
                                    std::vector<std::string>& notes);
 
+/// Runs tetrace-builder for only the mesh, cleaned, repaired if that is asked for, and placed in its domain; it writes
+/// `out`, a scene without tets. Throws as build_scene() does.
+void build_mesh_only(const std::filesystem::path& mesh, const std::filesystem::path& out, const std::string& label,
+                     const BuildOptions& options, const Progress& progress, std::vector<std::string>& notes);
+
 } // namespace tetrace

@@ -264,6 +264,17 @@ fs::path cached_mesh_path(const std::string& name, std::uint64_t key)
     return folder / name;
 }
 
+WorkFolder::WorkFolder(const fs::path& scene_file) : path_(temporary_name(scene_file))
+{
+    make_cache_folder(path_);
+}
+
+WorkFolder::~WorkFolder()
+{
+    std::error_code ignored; // what cannot be removed is listed and cleared with the cache
+    fs::remove_all(path_, ignored);
+}
+
 std::vector<CachedFile> list_cache()
 {
     std::vector<CachedFile> files;

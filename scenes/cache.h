@@ -50,6 +50,20 @@ inline constexpr std::uint32_t optimiser_version = 3;
 /// Makes the cache's folder, or one in it. Throws Error{invalid_input} naming it and the system's reason.
 void make_cache_folder(const std::filesystem::path& folder);
 
+/// A folder that only one build of a scene uses, next to the scene's file; it is removed however the build ends.
+class WorkFolder {
+public:
+    /// Throws as make_cache_folder() does.
+    explicit WorkFolder(const std::filesystem::path& scene_file);
+    ~WorkFolder();
+    WorkFolder(const WorkFolder&) = delete;
+    WorkFolder& operator=(const WorkFolder&) = delete;
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+private:
+    std::filesystem::path path_;
+};
+
 struct CachedFile {
     std::filesystem::path path;
     std::uint64_t bytes = 0;

@@ -4,6 +4,7 @@
 #include "core/base/printable.h"
 #include "scenes/build_scene.h"
 #include "scenes/mesh_files.h"
+#include "scenes/pinned.h"
 #include "scenes/procedural.h"
 
 #include <charconv>
@@ -95,6 +96,14 @@ BuildOptions default_build(TetsKind tets)
     return build;
 }
 
+bool is_usual_build(const BuildOptions& build)
+{
+    const BuildOptions usual = default_build(TetsKind::rays);
+    return build.tets == usual.tets && build.domain == usual.domain && build.divisions == usual.divisions &&
+           build.switches == usual.switches && build.repair == usual.repair && build.effort == usual.effort &&
+           build.optimise_s == usual.optimise_s;
+}
+
 namespace {
 
 /// The number after the head of a name; empty for a name without that head, and 0 for what is not a number of 32 bits.
@@ -145,12 +154,14 @@ const CatalogueEntry* find_in_catalogue(const std::string& name)
 
 std::string scene_label(const std::string& name)
 {
+    if (const PinnedScene* const pinned = find_pinned(name)) return std::string(pinned->of);
     return find_in_catalogue(name) != nullptr ? name : printable_line(std::filesystem::path(name).stem().string());
 }
 
 std::string why_not_available(const std::string& name)
 {
-    const CatalogueEntry* entry = find_in_catalogue(name);
+    const PinnedScene* const pinned = find_pinned(name);
+    const CatalogueEntry* entry = find_in_catalogue(pinned != nullptr ? std::string(pinned->of) : name);
     if (entry != nullptr) return entry->source == SceneSource::file ? locate_mesh(*entry).reason : "";
     if (find_procedural(name) || lattice_resolution(name)) return "";
     std::error_code ignored; // what cannot be looked at is not there for us

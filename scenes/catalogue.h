@@ -83,9 +83,11 @@ struct BuildOptions {
 /// are another set (docs/spec/rays-tets.md).
 [[nodiscard]] BuildOptions default_build(TetsKind tets);
 
-/// A scene that the user asked for: a name of the catalogue, `NAME@N` of a procedural one, `lattice:N`, or the path of
-/// a mesh file or a
-/// `.tet` file.
+/// Whether the tets are those of default_build(TetsKind::rays): limits of time and memory may differ.
+[[nodiscard]] bool is_usual_build(const BuildOptions& build);
+
+/// A scene that the user asked for: a name of the catalogue, a pinned scene (scenes/pinned.h), `NAME@N` of a procedural
+/// one, `lattice:N`, or the path of a mesh file or a `.tet` file.
 struct SceneRequest {
     std::string name; ///< as given; rows show scene_label()
     BuildOptions build;
@@ -94,7 +96,7 @@ struct SceneRequest {
 /// The row of that name, or null.
 [[nodiscard]] const CatalogueEntry* find_in_catalogue(const std::string& name);
 
-/// Short name for rows: the catalogue's name, or the file's stem.
+/// Short name for rows: the catalogue's name, of pinned scenes too, or the file's stem.
 [[nodiscard]] std::string scene_label(const std::string& name);
 
 /// Empty if the scene's mesh is available here, else the reason and how to get it.

@@ -8,6 +8,7 @@
 #include "scenes/builder_exit.h"
 #include "scenes/cache.h"
 #include "scenes/gltf_buffers.h"
+#include "scenes/load_pinned.h"
 #include "scenes/mesh_files.h"
 #include "scenes/procedural.h"
 #include "scenes/scene_file.h"
@@ -29,23 +30,6 @@ namespace tetrace {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// A folder that only this build uses; it is removed however the build ends.
-class WorkFolder {
-public:
-    explicit WorkFolder(const fs::path& scene_file) : path_(temporary_name(scene_file)) { make_cache_folder(path_); }
-    ~WorkFolder()
-    {
-        std::error_code ignored; // what cannot be removed is listed and cleared with the cache
-        fs::remove_all(path_, ignored);
-    }
-    WorkFolder(const WorkFolder&) = delete;
-    WorkFolder& operator=(const WorkFolder&) = delete;
-    [[nodiscard]] const fs::path& path() const { return path_; }
-
-private:
-    fs::path path_;
-};
 
 bool is_unfinished(const Scene& scene)
 {
@@ -343,6 +327,13 @@ LoadedScene load_mesh_scene(const SceneRequest& request, const fs::path& mesh, c
 
 LoadedScene load_scene(const SceneRequest& request, const Progress& progress)
 {
+    if (const PinnedScene* const pinned = find_pinned(request.name)) {
+        LoadedScene loaded = load_pinned(*pinned, request, progress, [&](const fs::path& mesh) {
+            return MeshSceneLoader(request, mesh, progress).load();
+        });
+        loaded.views = find_in_catalogue(std::string(pinned->of))->views;
+        return loaded;
+    }
     if (const auto resolution = lattice_resolution(request.name)) return load_lattice(request, *resolution, progress);
     if (const auto procedural = find_procedural(request.name)) {
         LoadedScene loaded = load_mesh_scene(request, mesh_file(*procedural), progress);

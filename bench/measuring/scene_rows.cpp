@@ -4,6 +4,7 @@
 #include "bench/terminal/progress.h"
 #include "core/base/hash.h"
 #include "core/base/printable.h"
+#include "scenes/pinned.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -185,13 +186,15 @@ nlohmann::json scene_json(const SceneWork& scene, const Options& options)
                              {"order", build.order},
                              {"tets_kind", name_of(build.optimised.tets)},
                              {"tool", build.tool},
-                             {"build_s", build.build_s},
                              {"from_cache", loaded.from_cache},
                              {"camera_set", camera_set_name(options)},
                              {"views", scene.view_numbers()},
                              {"width", scene.width()},
                              {"height", scene.height()},
                              {"locate_s", scene.locate_s()}};
+    object["mesh_hash"] = hash_text(mesh_hash(loaded.scene.mesh));
+    if (const PinnedScene* const pinned = pinned_with(loaded.hash)) object["pinned"] = std::string(pinned->name);
+    if (build.build_s > 0) object["build_s"] = build.build_s; // else the tets were stored
     const auto list = [](Double3 v) { return nlohmann::json{v.x, v.y, v.z}; };
     const BoundingSphere sphere = source_sphere(loaded.scene);
     object["centre"] = list(sphere.centre);

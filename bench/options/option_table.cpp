@@ -3,6 +3,7 @@
 #include "bench/options/apply_option.h"
 #include "bench/options/option_parts.h"
 #include "bench/options/option_values.h"
+#include "bench/options/workload.h"
 #include "scenes/catalogue.h"
 
 #include <algorithm>
@@ -86,17 +87,31 @@ void forbid_repair(Options& options, const std::string&)
     options.repair = false;
 }
 
+/// "'default-2026.11', what ...; ..."
+std::string workload_texts()
+{
+    std::vector<std::string> texts;
+    for (const Workload& workload : workloads())
+        texts.push_back(fmt::format("'{}', {}", workload.name, workload.what));
+    return fmt::format("{}", fmt::join(texts, "; "));
+}
+
 std::vector<OptionRow> scene_options()
 {
     return {
+        {"Scenes", "--workload", "NAME",
+         "Trace this named set of scenes, cameras and rays, whose results stay comparable across versions of tetrace: " +
+             workload_texts() + ". Takes the place of the options of scenes and rays (docs/workloads.md).",
+         bit(Verb::bench) | bit(Verb::check), false, apply_workload},
         {"Scenes", "--scene", "SCENE",
          "A name from the catalogue ('tetrace scenes' lists it), a mesh file (PLY, OBJ, OFF, STL, glTF), a pipe of "
          "one, or a .tet file. May be repeated, or a list with commas. 'all' is every available scene of the catalogue "
          "except "
-         "lattice. NAME@N has about N triangles; the name can be " +
+         "lattice. NAME-1 is NAME as it was first pinned, the same in "
+         "every version of tetrace. NAME@N has about N triangles; the name can be " +
              scene_names([](const CatalogueEntry& scene) { return scene.procedural.has_value(); }) +
-             ". lattice:N has 6 N^3 tets, for example 2 GB in layout half32 with N = 138. Default: bunny, armadillo "
-             "and atrium; cubes, banana and atrium if the first two are missing.",
+             ". lattice:N has 6 N^3 tets, for example 2 GB in layout half32 with N = 138. Default: bunny-1, "
+             "armadillo-1 and atrium-1; cubes, banana and atrium if the first two are missing.",
          building, true, append_scenes},
         {"Scenes", "--repair", "",
          "If triangles of a mesh cross, overlap or touch, cut them along their exact intersections; if that never "

@@ -5,6 +5,7 @@
 #include "bench/options/option_values.h"
 
 #include "core/base/control_groups.h"
+#include "scenes/pinned.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <fmt/format.h>
@@ -228,6 +229,23 @@ Options defaults_of(Verb verb)
     return options;
 }
 
+/// A workload decides them.
+constexpr std::string_view decided_by_workload[] = {"--scene",     "--repair",  "--no-repair", "--domain",
+                                                    "--tets",      "--effort",  "--divisions", "--switches",
+                                                    "--camera-set", "--views",   "--size",      "--rays",
+                                                    "--ray-order", "--shard"};
+
+void check_workload(Verb verb, const CLI::App& app)
+{
+    if (app.get_option_no_throw("--workload") == nullptr || app.get_option("--workload")->count() == 0) return;
+    for (const OptionRow& row : option_table())
+        if (takes(verb, row) && std::ranges::find(decided_by_workload, row.name) != std::end(decided_by_workload) &&
+            app.get_option(std::string(row.name))->count() > 0)
+            throw Error(ErrorKind::usage,
+                        fmt::format("{}: --workload decides it, so that results compare; leave one of them out",
+                                    row.name));
+}
+
 bool asks_for_rivals(Verb verb, const CLI::App& app)
 {
     if (verb != Verb::reproduce) return false;
@@ -283,6 +301,7 @@ Options parse_verb(Verb verb, const std::vector<std::string>& arguments)
     for (const OptionRow& row : option_table())
         if (takes(verb, row)) apply_row(options, row, app);
     if (verb == Verb::reproduce) check_rivals(options, app);
+    check_workload(verb, app);
     set_files(options, files);
     choose_default_views(options);
     options.words = {std::string(name_of(verb))};
@@ -381,9 +400,13 @@ std::vector<SceneRequest> scene_requests(const Options& options)
         is_rivals || options.verb == Verb::bench || options.verb == Verb::check || options.verb == Verb::render;
     build.keep_unfinished = options.verb == Verb::build;
     build.memory_limit_bytes = options.memory_limit_bytes != 0 ? options.memory_limit_bytes : usual_memory_limit();
+    const bool are_pinned = options.verb != Verb::build && is_usual_build(build);
     std::vector<SceneRequest> requests;
-    for (const std::string& name : options.scenes.empty() ? default_scenes() : options.scenes)
+    for (const std::string& name : options.scenes)
         requests.push_back({name, build});
+    if (options.scenes.empty())
+        for (const std::string& name : default_scenes())
+            requests.push_back({are_pinned ? newest_pinned(name) : name, build});
     return requests;
 }
 

@@ -166,6 +166,7 @@ struct Options {
 
     std::optional<std::filesystem::path> out;
     std::optional<Format> format;
+    bool brief = false;                       ///< of `bench` and `show`: one screen
     std::vector<std::string> columns;         ///< keys of the columns to print; empty: all that fit
     std::string label;                        ///< what the user calls the machine, or this run of it
     bool anonymous = false;                   ///< no host name and no folders in results

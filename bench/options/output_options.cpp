@@ -36,6 +36,10 @@ std::vector<OptionRow> output_options()
          "mrays_per_s,spread. An unknown name prints the list of valid ones. Default: all, or on a terminal the "
          "most important ones that fit.",
          measuring | bit(Verb::compare) | bit(Verb::show), true, append_text(&Options::columns)},
+        {"Output", "--brief", "",
+         "Print one screen: the machine, the five most telling rows, the score, what is compared, and whether to trust "
+         "it. Files have everything.",
+         bit(Verb::bench) | bit(Verb::show), false, set(&Options::brief)},
         {"Output", "--label", "TEXT",
          "Name of this machine in the result, in 'report' and in 'compare', for example 'Zen 5, 96 cores'. Default: "
          "the CPU's name, family, model and stepping.",

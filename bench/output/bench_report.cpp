@@ -1,8 +1,10 @@
 #include "bench/output/bench_report.h"
 
 #include "bench/measuring/figures.h"
+#include "bench/output/brief.h"
 #include "bench/output/device_json.h"
 #include "bench/output/row_fields.h"
+#include "bench/output/score.h"
 #include "bench/statistics/rank_interval.h"
 #include "bench/terminal/text.h"
 
@@ -156,6 +158,10 @@ nlohmann::json bench_json(const BenchResult& result, const Options& options)
     section["missing_scenes"] = result.missing_scenes;
     section["missing_devices"] = result.missing_devices;
     section["scenes"] = result.scenes;
+    if (const Workload* const workload = workload_of(result.scenes, result.rows)) {
+        section["workload"] = workload->name;
+        if (is_timed(result)) section["scores"] = scores_json(scores_of(workload, result.rows));
+    }
     section["devices"] = nlohmann::json::array();
     for (const RowDevice& device : result.devices)
         section["devices"].push_back(row_device_json(device));
@@ -193,10 +199,12 @@ std::string scene_headline(const ResultValue& scene)
     if (const std::string switches = text_of("switches"); !switches.empty()) how += ", -" + switches;
     if (scene.at("from_cache").flag()) how += ", cached";
     const auto bvh = scene.find("bvh_build_s");
-    return fmt::format("{}: {} tets, {} occlusive + {} free faces, {}built in {} ({}){}\n", scene.at("name").line(),
+    const auto built = scene.find("build_s");
+    const std::string name = scene.at("name").line(), pinned = text_of("pinned");
+    return fmt::format("{}: {} tets, {} occlusive + {} free faces, {}{} ({}){}\n", pinned.empty() ? name : pinned,
                        with_commas(scene.at("tets").count()), with_commas(scene.at("occlusive_faces").count()),
                        with_commas(scene.at("free_faces").count()), size ? size_text(size->count()) + ", " : "",
-                       seconds_text(scene.at("build_s").number()), how,
+                       built ? "built in " + seconds_text(built->number()) : "stored", how,
                        bvh ? fmt::format(", its BVH in {}", seconds_text(bvh->number())) : "");
 }
 
@@ -254,6 +262,12 @@ Sheet bench_sheet(const BenchResult& result)
         sheet.table(rate_table(name, result));
         sheet.gap();
     }
+    if (const Workload* const workload = workload_of(result.scenes, result.rows); workload && is_timed(result)) {
+        sheet.heading(fmt::format("scores: geometric means over {}", workload->name));
+        sheet.gap();
+        sheet.table(score_table(scores_of(workload, result.rows)));
+        sheet.gap();
+    }
     if (is_timed(result)) {
         sheet.heading("where the time goes");
         sheet.gap();
@@ -271,7 +285,13 @@ Sheet bench_sheet(const BenchResult& result)
 
 Report bench_report(const BenchResult& result, const Options& options)
 {
-    Report report{bench_sheet(result), flat_table(result), bench_json(result, options)};
+    Report report{{}, flat_table(result), bench_json(result, options)};
+    if (options.brief) {
+        report.sheet.labelled("Machine", machine_sentence(ResultValue(report.json, "result").at("tetrace")));
+        report.sheet.append(brief_sheet(result));
+    } else {
+        report.sheet = bench_sheet(result);
+    }
     report.markdown = report.sheet.markdown({.columns = options.columns});
     if (options.out) report.sheet.labelled("Result", options.out->string());
     return report;

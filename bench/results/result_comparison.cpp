@@ -1,6 +1,7 @@
 #include "bench/results/result_comparison.h"
 
 #include "bench/options/name_filter.h"
+#include "bench/results/work_recipe.h"
 #include "bench/statistics/statistics.h"
 #include "core/base/error.h"
 
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace tetrace {
 
@@ -21,12 +23,31 @@ std::string rays_text(const ResultScene& scene)
                        scene.height);
 }
 
-std::string other_rays(const ResultScene& a, const ResultScene& b)
+/// What decides the answers of a structure: tets and domain decide those of a BVH no more than a layout does. Results
+/// before 2026-11-27 have only the hash of the mesh file; that the hits are the same says the rest.
+std::string geometry_hash(const ResultScene& scene, bool is_bvh, bool have_mesh_hash)
 {
-    if (a.hash != b.hash) return fmt::format("the scene {} has hash {} in A and {} in B", a.name, a.hash, b.hash);
+    if (!is_bvh) return scene.hash;
+    if (have_mesh_hash) return scene.mesh_hash;
+    return scene.source_hash.empty() ? scene.hash : scene.source_hash;
+}
+
+std::string other_rays(const ResultScene& a, const ResultScene& b, bool is_bvh)
+{
+    const bool have_mesh_hash = !a.mesh_hash.empty() && !b.mesh_hash.empty();
+    const std::string in_a = geometry_hash(a, is_bvh, have_mesh_hash), in_b = geometry_hash(b, is_bvh, have_mesh_hash);
+    if (in_a != in_b)
+        return fmt::format("the {} {} has hash {} in A and {} in B", is_bvh ? "mesh of" : "scene", a.name, in_a, in_b);
     if (rays_text(a) != rays_text(b)) return fmt::format("{} in A, {} in B", rays_text(a), rays_text(b));
     if (a.views != b.views) return fmt::format("other views of {} in A than in B", a.camera_set);
     return {};
+}
+
+/// What differs, and what would do A's work again.
+std::string other_work(const ResultScene& a, const ResultScene& b, bool is_bvh)
+{
+    const std::string difference = other_rays(a, b, is_bvh), recipe = work_recipe(a, b).text();
+    return difference + (difference.empty() || recipe.empty() ? "" : "; ") + (difference.empty() ? "" : recipe);
 }
 
 std::string other_searches(const ResultFile& a, const ResultFile& b)
@@ -73,24 +94,37 @@ const ResultScene& scene_of(const ResultFile& file, const ResultRow& row)
 std::string different_work(const ResultFile& a, const ResultRow& row_a, const ResultFile& b, const ResultRow& row_b)
 {
     std::string difference =
-        row_a.scene.empty() ? other_searches(a, b) : other_rays(scene_of(a, row_a), scene_of(b, row_b));
+        row_a.scene.empty() ? other_searches(a, b)
+                            : other_work(scene_of(a, row_a), scene_of(b, row_b), row_a.structure == "bvh");
     if (difference.empty()) difference = other_launches(launches_of(a, row_a), launches_of(b, row_b));
     return difference.empty() ? other_answers(row_a, row_b) : difference;
 }
+
+namespace {
+
+std::string rays_through(const std::string& geometry, const ResultScene& scene)
+{
+    return fmt::format("{} {} of {}: {}", geometry, rays_text(scene), scene.name, fmt::join(scene.views, ","));
+}
+
+} // namespace
 
 std::string rays_of(const ResultFile& file, const ResultRow& row)
 {
     if (row.scene.empty()) return file.search_size;
     const ResultScene& scene = scene_of(file, row);
-    return fmt::format("{} {} of {}: {}", scene.hash, rays_text(scene), scene.name, fmt::join(scene.views, ","));
+    return rays_through(scene.hash, scene);
 }
 
 std::string work_of(const ResultFile& file, const ResultRow& row)
 {
     const std::string& hash =
         row.hit_hash.empty() ? row.views_hash : row.hit_hash; // merged shards have only the latter
-    return hash.empty() ? std::string()
-                        : fmt::format("{} {} {} {}", row.name, hash, rays_of(file, row), launches_of(file, row));
+    if (hash.empty()) return {};
+    const bool is_bvh = row.structure == "bvh";
+    const std::string rays =
+        is_bvh ? rays_through(geometry_hash(scene_of(file, row), true, false), scene_of(file, row)) : rays_of(file, row);
+    return fmt::format("{} {} {} {}", row.name, hash, rays, launches_of(file, row));
 }
 
 bool RatePulse::is_noisy() const
@@ -172,7 +206,7 @@ std::vector<ComparedRow> paired_rows(const ResultFile& before, const ResultFile&
 /// mode fast, depend on the processor.
 void find_different_work(const ResultFile& before, const ResultFile& after, std::vector<ComparedRow>& rows)
 {
-    std::string reasons;
+    std::map<std::string, std::vector<const ComparedRow*>> reasons;
     bool any_compared = false;
     for (ComparedRow& row : rows) {
         if (row.outcome != RowOutcome::compared) continue;
@@ -180,13 +214,14 @@ void find_different_work(const ResultFile& before, const ResultFile& after, std:
         any_compared = any_compared || row.difference.empty();
         if (row.difference.empty()) continue;
         row.outcome = RowOutcome::different;
-        reasons += fmt::format("\n  {}: {}", row.name(), row.difference);
+        reasons[row.difference].push_back(&row);
     }
-    if (!any_compared && !reasons.empty())
-        reject_pair(before, after,
-                    fmt::format("no row did the same work in both, so no times are comparable:{}\n"
-                                "measure both on the same scenes and views",
-                                reasons));
+    if (any_compared || reasons.empty()) return;
+    std::string text = "no row did the same work in both, so no times are comparable:";
+    for (const auto& [reason, of] : reasons)
+        text += of.size() == 1 ? fmt::format("\n  {}: {}", of.front()->name(), reason)
+                               : fmt::format("\n  {} rows, such as {}: {}", of.size(), of.front()->name(), reason);
+    reject_pair(before, after, text);
 }
 
 void require_rows(const ResultFile& before, const ResultFile& after, const std::vector<ComparedRow>& rows,

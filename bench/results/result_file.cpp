@@ -134,6 +134,13 @@ ResultScene read_scene(const ResultValue& value)
     ResultScene scene;
     scene.name = value.at("name").line();
     scene.hash = value.at("hash").hash();
+    if (const auto hash = value.find("mesh_hash")) scene.mesh_hash = hash->hash();
+    if (const auto hash = value.find("source_hash")) scene.source_hash = hash->hash();
+    scene.tets_kind = line_or_nothing(value, "tets_kind");
+    scene.domain = line_or_nothing(value, "domain");
+    scene.switches = line_or_nothing(value, "switches");
+    if (const auto divisions = value.find("divisions")) scene.divisions = divisions->count();
+    if (const auto optimised = value.find("optimised")) scene.effort = optimised->at("effort").count();
     scene.camera_set = value.at("camera_set").line();
     if (const auto hash = value.find("camera_set_hash")) scene.camera_set_hash = hash->hash();
     for (const ResultValue& view : value.at("views").items())
@@ -194,6 +201,7 @@ ResultRow read_row(const ResultValue& value)
 {
     ResultRow row = read_any_row(value);
     row.scene = value.at("scene").line();
+    row.structure = row.name.substr(0, row.name.find('/'));
     if (const auto hash = value.find("hit_hash")) row.hit_hash = hash->hash();
     if (const auto hash = value.find("views_hash")) row.views_hash = hash->hash();
     if (const auto rates = value.find("rates"))

@@ -31,6 +31,11 @@ struct ResultHead {
 struct ResultScene {
     std::string name;
     std::string hash;            ///< of all that decides a ray's answer
+    std::string mesh_hash;       ///< of all that decides a BVH's answers; empty in results before 2026-11-27
+    std::string source_hash;     ///< of the mesh file
+    std::string tets_kind, domain, switches;
+    std::uint64_t divisions = 0;
+    std::optional<std::uint64_t> effort; ///< of tets for rays
     std::string camera_set;      ///< a name
     std::string camera_set_hash; ///< of its numbers; empty if the name determines them
     std::vector<std::uint64_t> views;
@@ -43,7 +48,8 @@ struct ResultScene {
 /// A row of a result; texts are empty if the file has none.
 struct ResultRow {
     std::string name;
-    std::string scene; ///< empty: exit searches
+    std::string scene;     ///< empty: exit searches
+    std::string structure; ///< "cdt" or "bvh"; empty: exit searches
     std::string backend;
     Status status = Status::skipped;
     std::string reason;   ///< several lines perhaps; no other control characters

@@ -44,8 +44,10 @@ void note_building(RowRun& row)
     if (row.scene == nullptr) return; // searches are without a structure
     if (row.packed == nullptr)
         setup.build_s = times.build_s > 0 ? times.build_s : times.compile_s;
-    else
-        setup.build_s = setup.bvh_build_s.value_or(row.scene->loaded().scene.build.build_s);
+    else if (setup.bvh_build_s)
+        setup.build_s = setup.bvh_build_s;
+    else if (const double built_s = row.scene->loaded().scene.build.build_s; built_s > 0)
+        setup.build_s = built_s; // tets that were stored have none
 }
 
 void open_session(RowRun& row, const SceneData& data, const Options& options)

@@ -2,6 +2,7 @@
 
 #include "bench/measuring/conformity.h"
 #include "bench/output/bench_report.h"
+#include "bench/output/brief.h"
 #include "bench/output/check_matrix.h"
 #include "bench/output/report.h"
 #include "bench/show/recorded_rows.h"
@@ -186,7 +187,7 @@ void count_rows(Steadiness& steadiness, const ResultValue& part)
     }
 }
 
-RunAgain bench_again(const ResultFile& file)
+RunAgain bench_again(const ResultFile& file, bool brief)
 {
     const ResultValue section = file.section();
     BenchResult result;
@@ -208,8 +209,8 @@ RunAgain bench_again(const ResultFile& file)
     if (const auto timed = section.find("timed_s")) result.measurement.wall_s = timed->number();
     if (const auto asked = section.find("samples_asked")) result.samples_asked = small_count(*asked);
     if (const auto budget = section.find("budget_s")) result.budget_s = budget->number();
-    Sheet sheet = bench_sheet(result);
-    if (!section.find("timed_s") && is_timed(result))
+    Sheet sheet = brief ? brief_sheet(result) : bench_sheet(result);
+    if (!brief && !section.find("timed_s") && is_timed(result))
         sheet.labelled("Not here", "how long the run took, how many samples were asked for, the size of the tets, and "
                                    "which APIs had no device: the result is of a version that did not record them.");
     return {std::move(sheet), flat_table(result)};
@@ -236,9 +237,9 @@ Steadiness read_steadiness(const ResultValue& section)
     return steadiness;
 }
 
-RunAgain run_again(const ResultFile& file)
+RunAgain run_again(const ResultFile& file, bool brief)
 {
-    if (file.head.verb == "bench") return bench_again(file);
+    if (file.head.verb == "bench") return bench_again(file, brief);
     if (file.head.verb == "check") return check_again(file);
     throw Error(
         ErrorKind::invalid_input,

@@ -45,7 +45,7 @@ Report shown(const ResultFile& file, const Options& options)
         report.sheet.append(defects.sheet);
         report.table = std::move(defects.table);
     } else {
-        RunAgain again = run_again(file);
+        RunAgain again = run_again(file, options.brief);
         report.sheet.append(again.sheet);
         report.table = std::move(again.table);
     }

@@ -18,10 +18,14 @@ std::uint32_t source_triangle(const Scene& scene, std::uint32_t face_id)
     return face_id < scene.origins.size() ? scene.origins[face_id] : face_id;
 }
 
+std::uint64_t mesh_hash(const TriangleMesh& mesh)
+{
+    return hash_of(mesh.triangles, hash_of(mesh.vertices));
+}
+
 std::uint64_t scene_hash(const Scene& scene)
 {
-    std::uint64_t hash = hash_of(scene.mesh.vertices);
-    hash = hash_of(scene.mesh.triangles, hash);
+    std::uint64_t hash = mesh_hash(scene.mesh);
     hash = hash_of(scene.tets.vertices, hash);
     hash = hash_of(scene.tets.tets, hash);
     for (const auto& lines : scene.domain.lines)

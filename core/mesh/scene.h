@@ -77,7 +77,7 @@ struct BuildInfo {
     std::string switches;          ///< TetGen's switches as passed; empty if no TetGen ran
     std::uint32_t order = 0;       ///< in which TetGen got vertices and triangles; 0: as they are
     std::string tool;              ///< program and version that made the tets
-    double build_s = 0;            ///< seconds from mesh file to checked tets
+    double build_s = 0;            ///< seconds from mesh file to checked tets; 0: not known, the tets were stored
     Double3 centre{};       ///< what was subtracted from the file's coordinates before they were rounded to float
     double rounding = 0;    ///< largest distance by which rounding moved a vertex; mesh units
     int scale_exponent = 0; ///< domain units = (mesh units - centre) * 2^scale_exponent
@@ -110,6 +110,9 @@ struct Scene {
 
 /// The source's triangle of a Hit::face_id: what users see. What names no triangle (NO_HIT, LOST) stays.
 [[nodiscard]] std::uint32_t source_triangle(const Scene& scene, std::uint32_t face_id);
+
+/// 64-bit hash of the triangles that rays hit, in domain units: all of a scene that decides a BVH's answers.
+[[nodiscard]] std::uint64_t mesh_hash(const TriangleMesh& mesh);
 
 /// 64-bit hash of all that decides a ray's answer: mesh, tets, domain. Neither name nor origins nor build time is part
 /// of it.

@@ -245,12 +245,62 @@ TEST_F(ResultComparisons, is_refused_where_all_rows_did_different_work)
 {
     const std::string hash = difference([](Json& tetrace) { tetrace["scenes"][0]["hash"] = "0000000000000000"; });
     EXPECT_TRUE(contains(hash, "invalid_input: "));
-    EXPECT_TRUE(contains(hash, "one: the scene cubes has hash 0123456789abcdef in A and 0000000000000000 in B"));
-    EXPECT_TRUE(contains(hash, "two: the scene cubes"));
+    EXPECT_TRUE(contains(hash, "2 rows, such as one: the scene cubes has hash 0123456789abcdef in A and "
+                               "0000000000000000 in B"));
     EXPECT_TRUE(contains(difference([](Json& tetrace) { tetrace["scenes"][0]["width"] = 25; }),
                          "2 views of smoke at 24x16 in A, 2 views of smoke at 25x16 in B"));
     EXPECT_TRUE(contains(difference([](Json& tetrace) { tetrace["scenes"][0]["views"] = {0, 2}; }), "other views"));
     EXPECT_TRUE(contains(difference([](Json& tetrace) { tetrace["scenes"].clear(); }), "not among tetrace.scenes"));
+}
+
+// A BVH does not know which tets are around its triangles.
+TEST_F(ResultComparisons, rows_of_bvhs_compare_by_their_mesh_and_those_of_tets_by_the_scene)
+{
+    Json before = result_of({timed_row("bvh/bvh2/cubes", 1), timed_row("cdt/maria/cubes", 1)});
+    before["tetrace"]["scenes"][0]["source_hash"] = "00000000000000aa";
+    Json after = before;
+    after["tetrace"]["scenes"][0]["hash"] = "0000000000000000";
+    const auto verdicts = [&](const Json& a, const Json& b) {
+        const auto rows = compare(a, b).rows;
+        return rows[0].verdict() + ", " + rows[1].verdict();
+    };
+    EXPECT_EQ(verdicts(before, after), "SAME, DIFFERENT") << "older results have only the mesh file's hash";
+    after["tetrace"]["scenes"][0]["mesh_hash"] = "00000000000000bb";
+    EXPECT_EQ(verdicts(before, after), "SAME, DIFFERENT");
+    before["tetrace"]["scenes"][0]["mesh_hash"] = "00000000000000bb";
+    EXPECT_EQ(verdicts(before, after), "SAME, DIFFERENT");
+    before["tetrace"]["scenes"][0]["mesh_hash"] = "00000000000000bc";
+    const std::string error = error_of([&] { (void)verdicts(before, after); });
+    EXPECT_TRUE(contains(error, "the mesh of cubes has hash 00000000000000bc in A and 00000000000000bb in B")) << error;
+}
+
+TEST_F(ResultComparisons, a_refusal_names_the_options_that_bring_back_the_first_ones_work)
+{
+    const auto note_with = [&](const std::function<void(Json & a, Json & b)>& change) {
+        Json before = result_of({timed_row("one", 1)});
+        before["tetrace"]["scenes"][0]["source_hash"] = "00000000000000aa";
+        before["tetrace"]["scenes"][0]["tets_kind"] = "rays";
+        Json after = before;
+        change(before["tetrace"]["scenes"][0], after["tetrace"]["scenes"][0]);
+        return error_of([&] { (void)compare(before, after); });
+    };
+    const std::string rays = note_with([](Json& a, Json& b) {
+        a["views"] = {0, 1, 2, 5};
+        b["camera_set"] = "frame";
+        b["width"] = 512;
+    });
+    EXPECT_TRUE(contains(rays, "measure B with --camera-set smoke --views 0-2,5 --size 24x16")) << rays;
+    const std::string pinned = note_with([](Json& a, Json&) { a["hash"] = "02e9d84d743616a3"; });
+    EXPECT_TRUE(contains(pinned, "measure B with --scene bunny-1")) << pinned;
+    const std::string kind = note_with([](Json& a, Json& b) {
+        a["tets_kind"] = "cdt";
+        b["hash"] = "0000000000000000";
+    });
+    EXPECT_TRUE(contains(kind, "measure B with --tets cdt")) << kind;
+    const std::string version = note_with([](Json&, Json& b) { b["hash"] = "0000000000000000"; });
+    EXPECT_TRUE(contains(version, "the same options made other tets of cubes in A's version")) << version;
+    const std::string mesh = note_with([](Json&, Json& b) { b["source_hash"] = b["hash"] = "0000000000000000"; });
+    EXPECT_TRUE(contains(mesh, "A's cubes was made from another mesh file, of hash 00000000000000aa")) << mesh;
 }
 
 TEST_F(ResultComparisons, of_nothing_is_refused)

@@ -53,7 +53,7 @@ std::vector<PaperCell> scene_cells(const SceneRun& run)
             exact_cell(mebibytes(scene, Layout::tet80)),
             quantity_beside({mebibytes(scene, Layout::tet96), {}, {}, true},
                             paper ? std::optional(paper->memory_mib) : std::nullopt, run),
-            exact_cell(loaded.build.build_s)};
+            loaded.build.build_s > 0 ? exact_cell(loaded.build.build_s) : PaperCell()};
 }
 
 /// Whether we get the paper's counts where its mesh is built in the nearest way.

@@ -1,0 +1,41 @@
+#include "bench/options/workload.h"
+
+#include "bench/options/option_values.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace tetrace {
+
+const std::vector<Workload>& workloads()
+{
+    static const std::vector<std::string> scenes = {"bunny-1", "armadillo-1", "atrium-1"};
+    static const std::vector<Workload> all = {
+        {"default-2026.11", "what bench measures without other options", scenes, "0,1", 1024, {RayKind::primary}},
+        {"score-2026.11",
+         "primary rays, one bounce, and lines through the scene: what a score is of",
+         scenes,
+         "0,1",
+         512,
+         {RayKind::primary, RayKind::diffuse, RayKind::random}}};
+    return all;
+}
+
+void apply_workload(Options& options, const std::string& name)
+{
+    const auto found = std::ranges::find(workloads(), name, &Workload::name);
+    if (found == workloads().end()) {
+        std::vector<std::string_view> names;
+        for (const Workload& workload : workloads())
+            names.push_back(workload.name);
+        reject_value("--workload", name, fmt::format("{}", fmt::join(names, ", ")));
+    }
+    options.scenes = found->scenes;
+    options.views = found->views;
+    options.width = options.height = found->size;
+    options.rays = found->rays;
+}
+
+} // namespace tetrace

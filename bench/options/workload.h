@@ -1,0 +1,27 @@
+#pragma once
+
+#include "bench/options/options.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tetrace {
+
+/// A named, versioned set of scenes, cameras and rays: results of one workload compare across versions of tetrace. A
+/// name never changes its meaning; what is to change gets a new one.
+struct Workload {
+    std::string_view name, what;
+    std::vector<std::string> scenes; ///< pinned (scenes/pinned.h), as are the cameras of camera set `frame`
+    std::string views;               ///< of `frame`, as --views has it
+    std::uint32_t size;              ///< width and height of images
+    std::vector<RayKind> rays;
+};
+
+/// All of them, the one that `bench` runs by default first.
+[[nodiscard]] const std::vector<Workload>& workloads();
+
+/// Makes the options ask for the workload of that name. Throws Error{usage} with the accepted names.
+void apply_workload(Options& options, const std::string& name);
+
+} // namespace tetrace

@@ -1,0 +1,137 @@
+#include "bench/output/brief.h"
+
+#include "bench/measuring/figures.h"
+#include "bench/output/score.h"
+#include "bench/terminal/text.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace tetrace {
+
+namespace {
+
+constexpr std::size_t brief_rows = 5;
+
+bool is_emulated(const Score& score)
+{
+    return score.rows.front()->device.kind == DeviceKind::emulated;
+}
+
+/// The fastest walk and the fastest BVH of each device, those of emulated devices last; then the next fastest.
+std::vector<Score> most_telling(const std::vector<Score>& all)
+{
+    std::vector<Score> first, rest;
+    std::set<std::pair<std::string, Structure>> seen;
+    for (const Score& score : all) {
+        if (score.mrays_per_s == 0) continue;
+        const RowRecord& row = *score.rows.front();
+        const std::string device = row.device.kind == DeviceKind::cpu ? "host" : device_label(row.key);
+        (seen.insert({device, row.key.kernel.structure}).second ? first : rest).push_back(score);
+    }
+    for (std::vector<Score>* list : {&first, &rest})
+        std::ranges::stable_partition(*list, [](const Score& score) { return !is_emulated(score); });
+    first.insert(first.end(), rest.begin(), rest.end());
+    if (first.size() > brief_rows) first.resize(brief_rows);
+    std::ranges::stable_sort(first, std::ranges::greater(), &Score::mrays_per_s);
+    return first;
+}
+
+std::string score_sentence(const Workload* workload, const std::vector<Score>& scores)
+{
+    if (workload == nullptr) return "none: the run is not of a named workload (--workload).";
+    for (const Score& score : scores) // the fastest first
+        if (score.is_score() && !is_emulated(score))
+            return fmt::format("{} Mrays/s, {} on {}: geometric mean over {}.", score.text(),
+                               kernel_title(score.rows.front()->key), device_label(score.rows.front()->key),
+                               workload->name);
+    std::map<std::string, std::size_t> reasons;
+    for (const Score& score : scores)
+        if (!is_emulated(score)) ++reasons[score.reason];
+    const auto usual = std::ranges::max_element(reasons, {}, [](const auto& reason) { return reason.second; });
+    return usual == reasons.end() ? "none: only emulated devices ran."
+                                  : fmt::format("none: {} (the usual reason).", usual->first);
+}
+
+/// "bunny 1.84 [1.80, 1.88]; atrium ...": the walk's rate over the BVH's in each contest.
+template <class W, class R>
+std::string ratios_text(const std::vector<Contest<RowRecord>>& contests, W walk_kind, R rival_kind)
+{
+    std::vector<std::string> parts;
+    for (const auto& contest : contests) {
+        const RowRecord *const walk = contest.fastest(walk_kind), *const bvh = contest.fastest(rival_kind);
+        if (walk == nullptr || bvh == nullptr) continue;
+        const Comparison comparison = compare_rates(*bvh, *walk);
+        const bool noisy = figures_of(*walk)->noisy || figures_of(*bvh)->noisy;
+        parts.push_back(fmt::format("{} {:.2f} {}{} of {}", rays_title(walk->key), comparison.ratio,
+                                    interval_text(comparison), noisy ? " noisy" : "", kernel_title(bvh->key)));
+    }
+    return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+std::string compared_text(const BenchResult& result)
+{
+    std::vector<const RowRecord*> ranked;
+    for (const RowRecord& row : result.rows)
+        if (figures_of(row) && row.device.kind != DeviceKind::emulated) ranked.push_back(&row);
+    const std::string all = ratios_text(contests_of(ranked), Walk::any, Rival::any);
+    return all.empty() ? std::string() : "rate of the fastest walk over that of the fastest BVH: " + all + ".";
+}
+
+/// All rows without a rate in one sentence.
+std::string without_rate(const std::vector<RowRecord>& rows)
+{
+    std::map<Status, std::size_t> counts;
+    const RowRecord* first = nullptr;
+    for (const RowRecord& row : rows) {
+        if (has_answers(row)) continue;
+        ++counts[status_of(row)];
+        if (first == nullptr || status_of(row) > status_of(*first)) first = &row; // errors matter most
+    }
+    if (first == nullptr) return {};
+    std::vector<std::string> parts;
+    for (const auto& [status, count] : counts)
+        parts.push_back(fmt::format("{} {}", counted(count, "row", "rows"), name_of(status)));
+    std::string reason = reason_of(*first);
+    reason = reason.substr(0, reason.find('\n'));
+    if (reason.size() > 100) reason = reason.substr(0, 97) + "...";
+    return fmt::format("{}; for example {}: {}", fmt::join(parts, ", "), row_label(first->key), reason);
+}
+
+} // namespace
+
+std::string machine_sentence(const ResultValue& section)
+{
+    const ResultValue host = section.at("host");
+    const auto label = section.find("label");
+    return fmt::format("{}, {} threads, {}; tetrace {} ({}).", label ? label->line() : host.at("cpu").line(),
+                       section.at("threads").count(), host.at("system").line(), section.at("version").line(),
+                       section.at("commit").line());
+}
+
+Sheet brief_sheet(const BenchResult& result)
+{
+    const Workload* const workload = workload_of(result.scenes, result.rows);
+    const std::vector<Score> scores = scores_of(workload, result.rows);
+    Sheet sheet;
+    sheet.gap();
+    sheet.table(score_table(most_telling(scores)));
+    sheet.gap();
+    sheet.labelled("Score", score_sentence(workload, scores));
+    sheet.labelled("No rate", without_rate(result.rows));
+    if (result.interrupted) sheet.labelled("Stopped", interrupted_sentence);
+    sheet.labelled("Compared", compared_text(result));
+    if (is_timed(result)) {
+        Steadiness steadiness{result.measurement.load, result.measurement.pulses};
+        for (const RowRecord& row : result.rows)
+            steadiness.count(row);
+        sheet.labelled("Trust", trust_text(steadiness));
+    }
+    return sheet;
+}
+
+} // namespace tetrace

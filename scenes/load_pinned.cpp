@@ -1,0 +1,133 @@
+#include "scenes/load_pinned.h"
+
+#include "core/base/error.h"
+#include "core/base/hash.h"
+#include "scenes/build_scene.h"
+#include "scenes/cache.h"
+#include "scenes/gltf_buffers.h"
+#include "scenes/mesh_files.h"
+#include "scenes/scene_file.h"
+#include "scenes/stored_tets.h"
+
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void require_usual_build(const PinnedScene& pinned, const BuildOptions& asked)
+{
+    if (!is_usual_build(asked))
+        throw Error(ErrorKind::usage,
+                    fmt::format("scene {0}: its tets are pinned, so no option changes how they are made; "
+                                "leave out --tets, --effort, --domain and the like, or name the scene {1}",
+                                pinned.name, pinned.of));
+}
+
+/// The mesh file of the catalogue's row, if it is the pinned one.
+fs::path pinned_mesh(const PinnedScene& pinned)
+{
+    const std::string name(pinned.of);
+    const auto procedural = find_procedural(name);
+    const fs::path mesh = procedural ? mesh_file(*procedural) : mesh_file(*find_in_catalogue(name));
+    Hasher hasher;
+    add_file(hasher, mesh);
+    if (hasher.hash() != pinned.source_hash)
+        throw Error(ErrorKind::invalid_input,
+                    fmt::format("scene {}: {} is another mesh: its bytes have the hash {}, and those of {} the hash "
+                                "{}; name the scene {} to use this mesh",
+                                pinned.name, mesh.string(), hash_text(hasher.hash()), pinned.name,
+                                hash_text(pinned.source_hash), pinned.of));
+    return mesh;
+}
+
+/// Where the scene is cached if its stored tets are used.
+fs::path cached_file(const PinnedScene& pinned)
+{
+    return cache_directory() / fmt::format("{}-{}.tet", pinned.name, hash_text(pinned.scene_hash));
+}
+
+std::optional<LoadedScene> read_cached(const PinnedScene& pinned, const fs::path& file)
+{
+    std::error_code ignored; // what cannot be looked at is made again
+    if (!fs::exists(file, ignored)) return std::nullopt;
+    try {
+        LoadedScene loaded;
+        loaded.scene = read_scene(file);
+        loaded.hash = scene_hash(loaded.scene);
+        loaded.file = file;
+        loaded.from_cache = true;
+        if (loaded.hash == pinned.scene_hash) return loaded;
+    } catch (const Error& error) {
+        if (error.kind() == ErrorKind::unsupported) throw; // not enough memory
+    }
+    return std::nullopt; // damaged or foreign, and written anew
+}
+
+Scene joined_scene(const PinnedScene& pinned, const fs::path& mesh_only)
+{
+    const Scene placed = read_scene(mesh_only, SceneFileKind::mesh_only);
+    Scene scene = with_stored_tets(placed, pinned.tets);
+    scene.build.build_s = 0;
+    scene.build.tool = fmt::format("{}, stored in tetrace", pinned.tool);
+    scene.build.optimised = {.asked = TetsKind::rays,
+                             .tets = TetsKind::rays,
+                             .reason = {},
+                             .effort = usual_effort,
+                             .cost_before = pinned.cost_before,
+                             .cost_after = pinned.cost_after};
+    if (const std::uint64_t hash = scene_hash(scene); hash != pinned.scene_hash)
+        throw Error(ErrorKind::internal, fmt::format("scene {}: joined with its stored tets, the mesh gives a scene of "
+                                                     "hash {}, not {}",
+                                                     pinned.name, hash_text(hash), hash_text(pinned.scene_hash)));
+    return scene;
+}
+
+LoadedScene from_stored_tets(const PinnedScene& pinned, const SceneRequest& request, const fs::path& mesh,
+                             const Progress& progress)
+{
+    const fs::path file = cached_file(pinned);
+    LoadedScene loaded;
+    make_cache_folder(file.parent_path());
+    const WorkFolder work(file);
+    const fs::path mesh_only = work.path() / "mesh.tet", joined = work.path() / "joined.tet";
+    build_mesh_only(mesh, mesh_only, std::string(pinned.of), request.build, progress, loaded.messages);
+    write_scene(joined, joined_scene(pinned, mesh_only));
+    loaded.scene = read_scene(joined); // which checks it as any other scene
+    loaded.hash = pinned.scene_hash;
+    loaded.file = file;
+    std::error_code failure;
+    fs::rename(joined, file, failure);
+    if (failure)
+        throw Error(ErrorKind::invalid_input, fmt::format("loading scene {}: {} cannot be put into the cache: {}",
+                                                          pinned.name, file.string(), failure.message()));
+    return loaded;
+}
+
+} // namespace
+
+LoadedScene load_pinned(const PinnedScene& pinned, const SceneRequest& request, const Progress& progress,
+                        const std::function<LoadedScene(const fs::path& mesh)>& build)
+{
+    require_usual_build(pinned, request.build);
+    const fs::path mesh = pinned_mesh(pinned);
+    if (auto cached = read_cached(pinned, cached_file(pinned))) return std::move(*cached);
+    std::string reason = "another optimiser made them";
+    if (pinned.optimiser == optimiser_version) {
+        try {
+            LoadedScene built = build(mesh);
+            if (built.hash == pinned.scene_hash) return built;
+            reason = fmt::format("{} makes others here", built.scene.build.tool);
+        } catch (const Error& error) {
+            if (error.kind() == ErrorKind::interrupted || error.kind() == ErrorKind::missing) throw;
+            reason = fmt::format("making them here failed: {}", error.what());
+        }
+    }
+    LoadedScene loaded = from_stored_tets(pinned, request, mesh, progress);
+    loaded.messages.push_back(fmt::format("the tets are those of {} that this program stores: {}", pinned.name, reason));
+    return loaded;
+}
+
+} // namespace tetrace

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "scenes/load.h"
+#include "scenes/pinned.h"
+
+#include <functional>
+
+namespace tetrace {
+
+/// Loads a pinned scene. If this version's optimiser made it, the scene is built here, or taken from the cache, as any
+/// other scene is; should that give other tets (another TetGen), or fail, or should the optimiser be a newer one, its
+/// stored tets are joined with the mesh, and LoadedScene::messages say so. In all cases the scene has the pinned hash.
+/// request: its name is the pinned one's. build: loads the scene of a mesh file, with the request's options.
+/// Throws Error{usage} if the request has build options of its own, Error{invalid_input} if the mesh file of the
+/// catalogue's row is another one, and as load_scene() does.
+[[nodiscard]] LoadedScene load_pinned(const PinnedScene& pinned, const SceneRequest& request, const Progress& progress,
+                                      const std::function<LoadedScene(const std::filesystem::path& mesh)>& build);
+
+} // namespace tetrace

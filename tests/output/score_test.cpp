@@ -1,0 +1,139 @@
+#include "bench/output/score.h"
+#include "scenes/pinned.h"
+#include "core/base/hash.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+using namespace tetrace;
+
+namespace {
+
+/// Ten samples around that many seconds, 0.1 % apart, of a million rays.
+RowRecord timed_row(const std::string& scene, RayKind rays, double seconds)
+{
+    RowRecord row;
+    row.key = {scene, "openmp", {Structure::cdt, Method::project, Layout::half32}, rays};
+    row.device.name = "a processor";
+    Traced traced;
+    traced.totals.rays = 1'000'000;
+    row.outcome = traced;
+    for (int i = 0; i < 10; ++i)
+        row.samples_s.push_back(seconds * (1 + 0.001 * i));
+    row.run_samples = {10};
+    return row;
+}
+
+const Workload& scored()
+{
+    return workloads().at(1);
+}
+
+/// Nine rows of 1, 2, ... 9 seconds.
+std::vector<RowRecord> rows_of_workload()
+{
+    std::vector<RowRecord> rows;
+    for (const std::string& scene : scored().scenes)
+        for (const RayKind rays : scored().rays)
+            rows.push_back(timed_row(std::string(find_pinned(scene)->of), rays, static_cast<double>(rows.size() + 1)));
+    return rows;
+}
+
+nlohmann::json scene_record(const std::string& name)
+{
+    const PinnedScene& pinned = *find_pinned(name);
+    return {{"name", pinned.of},
+            {"hash", hash_text(pinned.scene_hash)},
+            {"camera_set_hash", hash_text(pinned.cameras_hash)},
+            {"views", {0, 1}},
+            {"width", 512},
+            {"height", 512}};
+}
+
+std::vector<nlohmann::json> scenes_of_workload()
+{
+    std::vector<nlohmann::json> scenes;
+    for (const std::string& name : scored().scenes)
+        scenes.push_back(scene_record(name));
+    return scenes;
+}
+
+} // namespace
+
+TEST(Scores, are_geometric_means_with_an_interval_around_them)
+{
+    const auto rows = rows_of_workload();
+    const auto scores = scores_of(&scored(), rows);
+    ASSERT_EQ(scores.size(), 1u);
+    const double factorial = std::tgamma(10.0);
+    const double expected = 1 / (std::pow(factorial, 1.0 / 9) * 1.0045); // median of the samples
+    EXPECT_EQ(scores[0].reason, "");
+    EXPECT_NEAR(scores[0].mrays_per_s, expected, 1e-9);
+    ASSERT_TRUE(scores[0].interval);
+    EXPECT_NEAR(scores[0].interval->high, expected * 1.0045, 1e-9) << "the first of ten samples of each row";
+    EXPECT_NEAR(scores[0].interval->low, expected * 1.0045 / 1.009, 1e-9);
+    EXPECT_EQ(scores_json(scores)[0]["rows"].size(), 9u);
+}
+
+TEST(Scores, are_given_only_if_each_row_is_ok_and_not_noisy)
+{
+    const auto reason_with = [](const std::function<void(std::vector<RowRecord>&)>& change) {
+        auto rows = rows_of_workload();
+        change(rows);
+        const auto scores = scores_of(&scored(), rows);
+        EXPECT_FALSE(scores.at(0).is_score());
+        EXPECT_EQ(scores_json(scores)[0].count("mrays_per_s"), 0u);
+        return scores.at(0).reason;
+    };
+    EXPECT_EQ(reason_with([](auto& rows) { rows[4].disturbance = "calibration"; }), "1 of 9 rows are noisy");
+    EXPECT_EQ(reason_with([](auto& rows) { rows[4].samples_s[0] = rows[4].samples_s[1] = rows[4].samples_s[2] = 1; }),
+              "1 of 9 rows are noisy");
+    EXPECT_EQ(reason_with([](auto& rows) { rows.pop_back(); }), "1 of 9 rows are missing");
+    EXPECT_EQ(reason_with([](auto& rows) { rows[0].outcome = Skipped{Status::skipped, "no time"}; }),
+              "bunny is skipped");
+    EXPECT_EQ(reason_with([](auto& rows) { rows[0].outcome = Failed{}; }), "bunny is error");
+    EXPECT_EQ(reason_with([](auto& rows) { std::get<Traced>(rows[1].outcome).verdicts.wrong = 1; }),
+              "bunny, diffuse rays is flawed");
+    const auto rows = rows_of_workload();
+    EXPECT_EQ(scores_of(nullptr, rows).at(0).reason, "not a workload");
+}
+
+TEST(Scores, lack_an_interval_with_too_few_samples)
+{
+    auto rows = rows_of_workload();
+    rows[3].samples_s.resize(8); // their range misses the median in 0.8 % of cases, more than a ninth of 5 %
+    rows[3].run_samples = {8};
+    EXPECT_FALSE(scores_of(&scored(), rows).at(0).interval);
+}
+
+TEST(Workloads, are_recognised_by_hashes_views_size_and_kinds_of_rays)
+{
+    const auto rows = rows_of_workload();
+    EXPECT_EQ(workload_of(scenes_of_workload(), rows), &scored());
+    const auto is_other = [&](const std::function<void(std::vector<nlohmann::json>&)>& change) {
+        auto scenes = scenes_of_workload();
+        change(scenes);
+        return workload_of(scenes, rows) == nullptr;
+    };
+    EXPECT_TRUE(is_other([](auto& scenes) { scenes.pop_back(); }));
+    EXPECT_TRUE(is_other([](auto& scenes) { scenes[1]["hash"] = "0123456789abcdef"; }));
+    EXPECT_TRUE(is_other([](auto& scenes) { scenes[1]["camera_set_hash"] = "0123456789abcdef"; }));
+    EXPECT_TRUE(is_other([](auto& scenes) { scenes[1].erase("camera_set_hash"); }));
+    EXPECT_TRUE(is_other([](auto& scenes) { scenes[1]["views"] = {0, 2}; }));
+    EXPECT_TRUE(is_other([](auto& scenes) { scenes[1]["width"] = 1024; }));
+    const std::vector<RowRecord> primary = {rows.front()};
+    EXPECT_EQ(workload_of(scenes_of_workload(), primary), nullptr);
+}
+
+TEST(Workloads, have_distinct_names_and_pinned_scenes)
+{
+    for (const Workload& workload : workloads()) {
+        for (const std::string& scene : workload.scenes)
+            EXPECT_NE(find_pinned(scene), nullptr) << scene;
+        EXPECT_EQ(std::ranges::count(workloads(), workload.name, &Workload::name), 1);
+        Options options;
+        apply_workload(options, std::string(workload.name));
+        EXPECT_EQ(options.width, workload.size);
+        EXPECT_EQ(options.scenes, workload.scenes);
+    }
+}
