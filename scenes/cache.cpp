@@ -264,12 +264,12 @@ fs::path cached_mesh_path(const std::string& name, std::uint64_t key)
     return folder / name;
 }
 
-WorkFolder::WorkFolder(const fs::path& scene_file) : path_(temporary_name(scene_file))
+BuildFolder::BuildFolder(const fs::path& scene_file) : path_(temporary_name(scene_file))
 {
     make_cache_folder(path_);
 }
 
-WorkFolder::~WorkFolder()
+BuildFolder::~BuildFolder()
 {
     std::error_code ignored; // what cannot be removed is listed and cleared with the cache
     fs::remove_all(path_, ignored);

@@ -51,13 +51,13 @@ inline constexpr std::uint32_t optimiser_version = 3;
 void make_cache_folder(const std::filesystem::path& folder);
 
 /// A folder that only one build of a scene uses, next to the scene's file; it is removed however the build ends.
-class WorkFolder {
+class BuildFolder {
 public:
     /// Throws as make_cache_folder() does.
-    explicit WorkFolder(const std::filesystem::path& scene_file);
-    ~WorkFolder();
-    WorkFolder(const WorkFolder&) = delete;
-    WorkFolder& operator=(const WorkFolder&) = delete;
+    explicit BuildFolder(const std::filesystem::path& scene_file);
+    ~BuildFolder();
+    BuildFolder(const BuildFolder&) = delete;
+    BuildFolder& operator=(const BuildFolder&) = delete;
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
 private:

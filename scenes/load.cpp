@@ -186,7 +186,7 @@ void MeshSceneLoader::set_apart()
 
 void MeshSceneLoader::build()
 {
-    const WorkFolder work(file_);
+    const BuildFolder work(file_);
     const fs::path made = work.path() / "scene.tet";
     const BuildEnd end = build_scene(mesh_, made, label_, request_.build, progress_, loaded_.messages);
     loaded_.interrupted = end.interrupted;

@@ -91,7 +91,7 @@ LoadedScene from_stored_tets(const PinnedScene& pinned, const SceneRequest& requ
     const fs::path file = cached_file(pinned);
     LoadedScene loaded;
     make_cache_folder(file.parent_path());
-    const WorkFolder work(file);
+    const BuildFolder work(file);
     const fs::path mesh_only = work.path() / "mesh.tet", joined = work.path() / "joined.tet";
     build_mesh_only(mesh, mesh_only, std::string(pinned.of), request.build, progress, loaded.messages);
     write_scene(joined, joined_scene(pinned, mesh_only));
@@ -126,7 +126,8 @@ LoadedScene load_pinned(const PinnedScene& pinned, const SceneRequest& request, 
         }
     }
     LoadedScene loaded = from_stored_tets(pinned, request, mesh, progress);
-    loaded.messages.push_back(fmt::format("the tets are those of {} that this program stores: {}", pinned.name, reason));
+    loaded.messages.push_back(
+        fmt::format("the tets are those of {} that this program stores: {}", pinned.name, reason));
     return loaded;
 }
 

@@ -25,9 +25,9 @@ void put(std::vector<std::byte>& bytes, std::span<const std::byte> more)
     bytes.insert(bytes.end(), more.begin(), more.end());
 }
 
-void put_count(std::vector<std::byte>& bytes, std::uint64_t count)
+void put_size(std::vector<std::byte>& bytes, std::uint64_t size)
 {
-    put(bytes, std::as_bytes(std::span(&count, 1)));
+    put(bytes, std::as_bytes(std::span(&size, 1)));
 }
 
 [[noreturn]] void refuse(const std::string& why)
@@ -152,10 +152,10 @@ std::vector<std::byte> store_tets(const Scene& scene)
     if (all.size() < vertices.size() || !std::equal(vertices.begin(), vertices.end(), all.begin()))
         throw Error(ErrorKind::unsupported, "storing tets: their first vertices are not those of the mesh");
     std::vector<std::byte> bytes;
-    put_count(bytes, vertices.size());
-    put_count(bytes, all.size() - vertices.size());
+    put_size(bytes, vertices.size());
+    put_size(bytes, all.size() - vertices.size());
     put(bytes, std::as_bytes(std::span(all).subspan(vertices.size())));
-    put_count(bytes, scene.tets.tets.size());
+    put_size(bytes, scene.tets.tets.size());
     for (const Tet& tet : scene.tets.tets)
         put(bytes, std::as_bytes(std::span(tet.vertices)));
     std::vector<std::byte> stored = compressed(bytes);

@@ -100,7 +100,8 @@ std::vector<OptionRow> scene_options()
 {
     return {
         {"Scenes", "--workload", "NAME",
-         "Trace this named set of scenes, cameras and rays, whose results stay comparable across versions of tetrace: " +
+         "Trace this named set of scenes, cameras and rays, whose results stay comparable across versions of "
+         "tetrace: " +
              workload_texts() + ". Takes the place of the options of scenes and rays (docs/workloads.md).",
          bit(Verb::bench) | bit(Verb::check), false, apply_workload},
         {"Scenes", "--scene", "SCENE",

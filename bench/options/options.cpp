@@ -230,10 +230,9 @@ Options defaults_of(Verb verb)
 }
 
 /// A workload decides them.
-constexpr std::string_view decided_by_workload[] = {"--scene",     "--repair",  "--no-repair", "--domain",
-                                                    "--tets",      "--effort",  "--divisions", "--switches",
-                                                    "--camera-set", "--views",   "--size",      "--rays",
-                                                    "--ray-order", "--shard"};
+constexpr std::string_view decided_by_workload[] = {"--scene",  "--repair",    "--no-repair", "--domain",     "--tets",
+                                                    "--effort", "--divisions", "--switches",  "--camera-set", "--views",
+                                                    "--size",   "--rays",      "--ray-order", "--shard"};
 
 void check_workload(Verb verb, const CLI::App& app)
 {
@@ -241,9 +240,9 @@ void check_workload(Verb verb, const CLI::App& app)
     for (const OptionRow& row : option_table())
         if (takes(verb, row) && std::ranges::find(decided_by_workload, row.name) != std::end(decided_by_workload) &&
             app.get_option(std::string(row.name))->count() > 0)
-            throw Error(ErrorKind::usage,
-                        fmt::format("{}: --workload decides it, so that results compare; leave one of them out",
-                                    row.name));
+            throw Error(
+                ErrorKind::usage,
+                fmt::format("{}: --workload decides it, so that results compare; leave one of them out", row.name));
 }
 
 bool asks_for_rivals(Verb verb, const CLI::App& app)

@@ -288,6 +288,7 @@ Report bench_report(const BenchResult& result, const Options& options)
     Report report{{}, flat_table(result), bench_json(result, options)};
     if (options.brief) {
         report.sheet.labelled("Machine", machine_sentence(ResultValue(report.json, "result").at("tetrace")));
+        report.sheet.gap();
         report.sheet.append(brief_sheet(result));
     } else {
         report.sheet = bench_sheet(result);

@@ -46,9 +46,8 @@ std::string score_sentence(const Workload* workload, const std::vector<Score>& s
     if (workload == nullptr) return "none: the run is not of a named workload (--workload).";
     for (const Score& score : scores) // the fastest first
         if (score.is_score() && !is_emulated(score))
-            return fmt::format("{} Mrays/s, {} on {}: geometric mean over {}.", score.text(),
-                               kernel_title(score.rows.front()->key), device_label(score.rows.front()->key),
-                               workload->name);
+            return fmt::format("{} Mrays/s, {} on {}: geometric mean over {}.", score.text(), score.title(),
+                               device_label(score.rows.front()->key), workload->name);
     std::map<std::string, std::size_t> reasons;
     for (const Score& score : scores)
         if (!is_emulated(score)) ++reasons[score.reason];
@@ -118,8 +117,7 @@ Sheet brief_sheet(const BenchResult& result)
     const Workload* const workload = workload_of(result.scenes, result.rows);
     const std::vector<Score> scores = scores_of(workload, result.rows);
     Sheet sheet;
-    sheet.gap();
-    sheet.table(score_table(most_telling(scores)));
+    sheet.table(score_table(most_telling(scores), false));
     sheet.gap();
     sheet.labelled("Score", score_sentence(workload, scores));
     sheet.labelled("No rate", without_rate(result.rows));

@@ -35,6 +35,7 @@ bool same_score(const RowRecord& a, const RowRecord& b)
     RowKey key = b.key;
     key.scene = a.key.scene;
     key.rays = a.key.rays;
+    key.kernel.task = a.key.kernel.task; // given rays have kernels of their own
     return a.key == key;
 }
 
@@ -57,8 +58,8 @@ FactorInterval range_over_runs(const Score& score)
 {
     std::vector<double> scores;
     for (std::size_t run = 0; run < score.rows.front()->run_samples.size(); ++run)
-        scores.push_back(mean_rate(
-            score, [&](const RowRecord& row) { return statistics_of(samples_of_runs(row).at(run)).median; }));
+        scores.push_back(
+            mean_rate(score, [&](const RowRecord& row) { return statistics_of(samples_of_runs(row).at(run)).median; }));
     const auto [low, high] = std::ranges::minmax(scores);
     return {low, high};
 }
@@ -120,6 +121,13 @@ const Workload* workload_of(const std::vector<nlohmann::json>& scenes, const std
     return nullptr;
 }
 
+std::string Score::title() const
+{
+    RowKey key = rows.front()->key;
+    key.rays = RayKind::primary;
+    return kernel_title(key);
+}
+
 std::string Score::text() const
 {
     if (!is_score()) return {};
@@ -137,36 +145,33 @@ std::vector<Score> scores_of(const Workload* workload, const std::vector<RowReco
     }
     for (Score& score : scores) {
         score.reason = reason_against(score, workload);
-        score.mrays_per_s =
-            mean_rate(score, [](const RowRecord& row) { return statistics_of(row.samples_s).median; });
+        score.mrays_per_s = mean_rate(score, [](const RowRecord& row) { return statistics_of(row.samples_s).median; });
         if (score.is_score()) score.interval = interval_of(score);
     }
     std::ranges::stable_sort(scores, std::ranges::greater(), &Score::mrays_per_s);
     return scores;
 }
 
-Table score_table(const std::vector<Score>& scores)
+Table score_table(const std::vector<Score>& scores, bool with_reasons)
 {
-    std::vector<Column> columns = {{"row", "row"},
-                                   {"backend", "backend"},
-                                   {"score", "score", "Mrays/s", 2, false, 0}};
+    std::vector<Column> columns = {{"row", "row"}, {"backend", "backend"}, {"score", "score", "Mrays/s", 2, false, 0}};
     std::vector<std::string> titles;
     for (const Score& score : scores)
         for (const RowRecord* row : score.rows)
             if (std::ranges::find(titles, rays_title(row->key)) == titles.end()) titles.push_back(rays_title(row->key));
     for (const std::string& title : titles)
         columns.push_back({title, title, "", 1});
-    columns.push_back({"reason", "no score because"});
+    if (with_reasons) columns.push_back({"reason", "no score because"});
     Table table(columns);
     for (const Score& score : scores) {
         const RowKey& key = score.rows.front()->key;
-        std::vector<Cell> cells = {kernel_title(key), device_label(key), text_cell(score.text())};
+        std::vector<Cell> cells = {score.title(), device_label(key), text_cell(score.text())};
         for (const std::string& title : titles) {
-            const auto row = std::ranges::find_if(
-                score.rows, [&](const RowRecord* of) { return rays_title(of->key) == title; });
+            const auto row =
+                std::ranges::find_if(score.rows, [&](const RowRecord* of) { return rays_title(of->key) == title; });
             cells.push_back(row != score.rows.end() ? cell_of(rate_of(**row)) : Cell());
         }
-        cells.push_back(text_cell(score.reason));
+        if (with_reasons) cells.push_back(text_cell(score.reason));
         table.add(std::move(cells));
     }
     return table;
@@ -177,7 +182,7 @@ nlohmann::json scores_json(const std::vector<Score>& scores)
     nlohmann::json list = nlohmann::json::array();
     for (const Score& score : scores) {
         const RowKey& key = score.rows.front()->key;
-        nlohmann::json object = {{"row", kernel_title(key)}, {"backend", key.backend}, {"device_index", key.device}};
+        nlohmann::json object = {{"row", score.title()}, {"backend", key.backend}, {"device_index", key.device}};
         for (const RowRecord* row : score.rows)
             object["rows"].push_back(row_name(row->key));
         if (score.is_score())

@@ -25,6 +25,8 @@ struct Score {
     std::optional<FactorInterval> interval;
     std::string reason; ///< why it is no score: the run is not of a workload, or a row is missing, not ok, or noisy
 
+    /// "cdt project half32".
+    [[nodiscard]] std::string title() const;
     [[nodiscard]] bool is_score() const { return reason.empty(); }
     /// "12.34 [12.20, 12.50]"; empty if it is no score.
     [[nodiscard]] std::string text() const;
@@ -34,7 +36,7 @@ struct Score {
 [[nodiscard]] std::vector<Score> scores_of(const Workload* workload, const std::vector<RowRecord>& rows);
 
 /// One line per score, with the rate of each of its rows.
-[[nodiscard]] Table score_table(const std::vector<Score>& scores);
+[[nodiscard]] Table score_table(const std::vector<Score>& scores, bool with_reasons = true);
 
 /// In a result, under "scores".
 [[nodiscard]] nlohmann::json scores_json(const std::vector<Score>& scores);

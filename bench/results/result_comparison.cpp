@@ -93,9 +93,9 @@ const ResultScene& scene_of(const ResultFile& file, const ResultRow& row)
 
 std::string different_work(const ResultFile& a, const ResultRow& row_a, const ResultFile& b, const ResultRow& row_b)
 {
-    std::string difference =
-        row_a.scene.empty() ? other_searches(a, b)
-                            : other_work(scene_of(a, row_a), scene_of(b, row_b), row_a.structure == "bvh");
+    std::string difference = row_a.scene.empty()
+                                 ? other_searches(a, b)
+                                 : other_work(scene_of(a, row_a), scene_of(b, row_b), row_a.structure == "bvh");
     if (difference.empty()) difference = other_launches(launches_of(a, row_a), launches_of(b, row_b));
     return difference.empty() ? other_answers(row_a, row_b) : difference;
 }
@@ -122,8 +122,8 @@ std::string work_of(const ResultFile& file, const ResultRow& row)
         row.hit_hash.empty() ? row.views_hash : row.hit_hash; // merged shards have only the latter
     if (hash.empty()) return {};
     const bool is_bvh = row.structure == "bvh";
-    const std::string rays =
-        is_bvh ? rays_through(geometry_hash(scene_of(file, row), true, false), scene_of(file, row)) : rays_of(file, row);
+    const std::string rays = is_bvh ? rays_through(geometry_hash(scene_of(file, row), true, false), scene_of(file, row))
+                                    : rays_of(file, row);
     return fmt::format("{} {} {} {}", row.name, hash, rays, launches_of(file, row));
 }
 

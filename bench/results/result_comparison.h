@@ -13,8 +13,8 @@ namespace tetrace {
 [[nodiscard]] const ResultScene& scene_of(const ResultFile& file, const ResultRow& row);
 
 /// Why two rows of equal names, of results A and B, did not do the same work: their scenes (of rows of BVHs, only the
-/// scenes' meshes), views, sizes or hit hashes differ, or on a GPU the numbers of launches; of exit searches, their number or the hash of their faces. Empty where
-/// they did the same. Throws as scene_of() does.
+/// scenes' meshes), views, sizes or hit hashes differ, or on a GPU the numbers of launches; of exit searches, their
+/// number or the hash of their faces. Empty where they did the same. Throws as scene_of() does.
 [[nodiscard]] std::string different_work(const ResultFile& a, const ResultRow& row_a, const ResultFile& b,
                                          const ResultRow& row_b);
 

@@ -30,14 +30,14 @@ struct ResultHead {
 /// A scene of a result with the rays that were traced through it.
 struct ResultScene {
     std::string name;
-    std::string hash;            ///< of all that decides a ray's answer
-    std::string mesh_hash;       ///< of all that decides a BVH's answers; empty in results before 2026-11-27
-    std::string source_hash;     ///< of the mesh file
+    std::string hash;        ///< of all that decides a ray's answer
+    std::string mesh_hash;   ///< of all that decides a BVH's answers; empty in results before 2026-11-27
+    std::string source_hash; ///< of the mesh file
     std::string tets_kind, domain, switches;
     std::uint64_t divisions = 0;
     std::optional<std::uint64_t> effort; ///< of tets for rays
-    std::string camera_set;      ///< a name
-    std::string camera_set_hash; ///< of its numbers; empty if the name determines them
+    std::string camera_set;              ///< a name
+    std::string camera_set_hash;         ///< of its numbers; empty if the name determines them
     std::vector<std::uint64_t> views;
     std::uint64_t width = 0, height = 0;
 };

@@ -50,7 +50,8 @@ struct RunAgain {
 };
 
 /// What a run of `bench` or `check` printed, made from its result by what made it then. A line at the end names what
-/// the result does not have. brief: of `bench`, brief_sheet(). Throws Error{invalid_input} for results of other verbs, and as read_rows() does.
+/// the result does not have. brief: of `bench`, brief_sheet(). Throws Error{invalid_input} for results of other verbs,
+/// and as read_rows() does.
 [[nodiscard]] RunAgain run_again(const ResultFile& file, bool brief = false);
 
 /// A result's `load` and `pulses`, and how many of its rows and searches were timed, noisy and disturbed.

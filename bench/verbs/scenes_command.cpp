@@ -3,6 +3,7 @@
 #include "bench/verbs/commands.h"
 #include "scenes/cache.h"
 #include "scenes/catalogue.h"
+#include "scenes/pinned.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -17,6 +18,11 @@ Table catalogue_table()
     for (const CatalogueEntry& entry : catalogue())
         table.add({entry.name, std::string(why_not_available(entry.name).empty() ? "available" : "missing"),
                    entry.description});
+    for (const PinnedScene& pinned : pinned_scenes()) {
+        const std::string name(pinned.name);
+        table.add({name, std::string(why_not_available(name).empty() ? "available" : "missing"),
+                   fmt::format("{} with pinned tets, the same in every version of tetrace", pinned.of)});
+    }
     return table;
 }
 

@@ -1,11 +1,17 @@
 #include "bench/output/score.h"
-#include "scenes/pinned.h"
+#include "bench/show/show_report.h"
 #include "core/base/hash.h"
+#include "scenes/pinned.h"
+#include "tests/support/temporary_folder.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <gtest/gtest.h>
+#include <regex>
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 
@@ -36,6 +42,8 @@ std::vector<RowRecord> rows_of_workload()
     for (const std::string& scene : scored().scenes)
         for (const RayKind rays : scored().rays)
             rows.push_back(timed_row(std::string(find_pinned(scene)->of), rays, static_cast<double>(rows.size() + 1)));
+    for (RowRecord& row : rows)
+        if (row.key.rays != RayKind::primary) row.key.kernel.task = Task::rays;
     return rows;
 }
 
@@ -45,9 +53,9 @@ nlohmann::json scene_record(const std::string& name)
     return {{"name", pinned.of},
             {"hash", hash_text(pinned.scene_hash)},
             {"camera_set_hash", hash_text(pinned.cameras_hash)},
-            {"views", {0, 1}},
-            {"width", 512},
-            {"height", 512}};
+            {"views", {0u, 1u}},
+            {"width", 512u},
+            {"height", 512u}};
 }
 
 std::vector<nlohmann::json> scenes_of_workload()
@@ -89,7 +97,9 @@ TEST(Scores, are_given_only_if_each_row_is_ok_and_not_noisy)
     EXPECT_EQ(reason_with([](auto& rows) { rows[4].samples_s[0] = rows[4].samples_s[1] = rows[4].samples_s[2] = 1; }),
               "1 of 9 rows are noisy");
     EXPECT_EQ(reason_with([](auto& rows) { rows.pop_back(); }), "1 of 9 rows are missing");
-    EXPECT_EQ(reason_with([](auto& rows) { rows[0].outcome = Skipped{Status::skipped, "no time"}; }),
+    EXPECT_EQ(reason_with([](auto& rows) {
+                  rows[0].outcome = Skipped{Status::skipped, "no time"};
+              }),
               "bunny is skipped");
     EXPECT_EQ(reason_with([](auto& rows) { rows[0].outcome = Failed{}; }), "bunny is error");
     EXPECT_EQ(reason_with([](auto& rows) { std::get<Traced>(rows[1].outcome).verdicts.wrong = 1; }),
@@ -119,8 +129,8 @@ TEST(Workloads, are_recognised_by_hashes_views_size_and_kinds_of_rays)
     EXPECT_TRUE(is_other([](auto& scenes) { scenes[1]["hash"] = "0123456789abcdef"; }));
     EXPECT_TRUE(is_other([](auto& scenes) { scenes[1]["camera_set_hash"] = "0123456789abcdef"; }));
     EXPECT_TRUE(is_other([](auto& scenes) { scenes[1].erase("camera_set_hash"); }));
-    EXPECT_TRUE(is_other([](auto& scenes) { scenes[1]["views"] = {0, 2}; }));
-    EXPECT_TRUE(is_other([](auto& scenes) { scenes[1]["width"] = 1024; }));
+    EXPECT_TRUE(is_other([](auto& scenes) { scenes[1]["views"] = {0u, 2u}; }));
+    EXPECT_TRUE(is_other([](auto& scenes) { scenes[1]["width"] = 1024u; }));
     const std::vector<RowRecord> primary = {rows.front()};
     EXPECT_EQ(workload_of(scenes_of_workload(), primary), nullptr);
 }
@@ -136,4 +146,19 @@ TEST(Workloads, have_distinct_names_and_pinned_scenes)
         EXPECT_EQ(options.width, workload.size);
         EXPECT_EQ(options.scenes, workload.scenes);
     }
+}
+
+TEST(Brief, is_one_screen_with_five_rows_a_score_what_is_compared_and_trust)
+{
+    const ResultFile file = read_result(TETRACE_RESULTS "/amd-epyc-zen5-2-cores/2026-11-27-005fd50.json");
+    const std::string text = run_again(file, true).sheet.text({.width = 80});
+    EXPECT_LE(std::ranges::count(text, '\n'), 22) << "two more are the machine's:\n" << text;
+    for (const char* const part :
+         {"cdt project half32 packets", "bvh stream robust", "Score     61.00 Mrays/s", "No rate   15 rows skipped",
+          "bunny 1.23 [1.18, 1.25] of bvh stream robust", "Trust     other processes used"})
+        EXPECT_TRUE(contains(std::regex_replace(text, std::regex("\n +"), " "), part)) << part << "\n" << text;
+    std::size_t longest = 0;
+    for (std::size_t at = 0, end = 0; (end = text.find('\n', at)) != std::string::npos; at = end + 1)
+        longest = std::max(longest, end - at);
+    EXPECT_LE(longest, 80u) << text;
 }

@@ -27,11 +27,11 @@ int main(int count, char** arguments)
         const auto cameras =
             make_cameras(CameraSet::frame, scene.mesh, entry != nullptr ? entry->views : std::vector<Aim>());
         const OptimisedInfo& made = scene.build.optimised;
-        std::printf("of %s; source %s, mesh %s, scene %s, cameras %s; optimiser %u, %s, cost %.17g to %.17g; %zu bytes\n",
-                    scene.name.c_str(), hash_text(scene.build.source_hash).c_str(),
-                    hash_text(mesh_hash(scene.mesh)).c_str(), hash_text(scene_hash(scene)).c_str(),
-                    hash_text(hash_of_cameras(cameras)).c_str(), optimiser_version, scene.build.tool.c_str(),
-                    made.cost_before, made.cost_after, stored.size());
+        std::printf(
+            "of %s; source %s, mesh %s, scene %s, cameras %s; optimiser %u, %s, cost %.17g to %.17g; %zu bytes\n",
+            scene.name.c_str(), hash_text(scene.build.source_hash).c_str(), hash_text(mesh_hash(scene.mesh)).c_str(),
+            hash_text(scene_hash(scene)).c_str(), hash_text(hash_of_cameras(cameras)).c_str(), optimiser_version,
+            scene.build.tool.c_str(), made.cost_before, made.cost_after, stored.size());
     } catch (const std::exception& error) {
         std::fprintf(stderr, "pin_scene: %s\n", error.what());
         return 3;

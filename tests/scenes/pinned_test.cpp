@@ -19,22 +19,20 @@ namespace {
 
 class PinnedScenes : public testing::Test {
 protected:
-    LoadedScene load(const std::string& name) const
-    {
-        return load_scene({name, default_build(TetsKind::rays)}, {});
-    }
+    LoadedScene load(const std::string& name) const { return load_scene({name, default_build(TetsKind::rays)}, {}); }
     /// A builder that reads meshes, and fails to make tets.
     void let_building_fail()
     {
         write_file(folder_ / "builder.sh", "#!/bin/sh\ncase \"$*\" in *--mesh-only*) exec '" TETRACE_BUILDER_PROGRAM
                                            "' \"$@\";; esac\nexit 4\n");
         std::filesystem::permissions(folder_ / "builder.sh", std::filesystem::perms::owner_all);
-        builder_.emplace("TETRACE_BUILDER", folder_ / "builder.sh");
+        other_builder_.emplace("TETRACE_BUILDER", folder_ / "builder.sh");
     }
 
     TemporaryFolder folder_;
     ScopedVariable cache_{"XDG_CACHE_HOME", folder_ / "cache"};
-    std::optional<ScopedVariable> builder_ = ScopedVariable("TETRACE_BUILDER", TETRACE_BUILDER_PROGRAM);
+    ScopedVariable builder_{"TETRACE_BUILDER", TETRACE_BUILDER_PROGRAM};
+    std::optional<ScopedVariable> other_builder_;
 };
 
 } // namespace
