@@ -1,5 +1,6 @@
 #include "bench/measuring/measure.h"
 
+#include "bench/measuring/figures.h"
 #include "bench/measuring/reporters.h"
 #include "bench/rows/json_numbers.h"
 #include "bench/rows/physical_device.h"
@@ -179,6 +180,8 @@ private:
     double written_s_ = 0;
 };
 
+constexpr unsigned max_rounds = 3; // of samples of a row that stays noisy
+
 /// Counts the samples of all rows, for the progress line, and what is needed to take one.
 struct Sweep {
     const Budget* budget; ///< whose clock is read
@@ -286,6 +289,38 @@ void reopen_rows(std::vector<RowRun>& rows, const Options& options)
     }
 }
 
+/// Rows that are noisy so far.
+std::vector<RowRun*> noisy_rows(std::vector<RowRun>& rows)
+{
+    std::vector<RowRun*> noisy;
+    for (RowRun& row : rows)
+        if (const auto figures = figures_of(row); is_timed(row) && figures && figures->noisy) noisy.push_back(&row);
+    return noisy;
+}
+
+/// Takes further samples of noisy rows: what disturbed them may have passed.
+void sample_on(std::vector<RowRun>& rows, Sweep& sweep, MachineWatch& watch, const Budget& budget,
+               GoogleReports& google)
+{
+    const unsigned asked = sweep.samples;
+    for (unsigned round = 1; round < max_rounds && !is_interrupted() && !sweep.failure; ++round) {
+        watch.pulses().take();
+        sweep.log->write(true);
+        watch.pulses().judge_rows(rows, watch.load());
+        const auto noisy = noisy_rows(rows);
+        double sample_s = 0;
+        for (const RowRun* const row : noisy)
+            sample_s += row->warm_s;
+        if (noisy.empty() || budget.left_s() < sample_s) return;
+        const unsigned more =
+            sample_s > 0 ? static_cast<unsigned>(std::min<double>(asked, budget.left_s() / sample_s)) : asked;
+        sweep.samples += more;
+        sweep.all += static_cast<double>(noisy.size()) * more;
+        for (const auto& group : sample_groups(noisy))
+            if (register_rows(group, sweep)) google.run();
+    }
+}
+
 /// At the end of a run, in which an interrupted one may have taken none.
 void count_samples(std::vector<RowRun>& rows)
 {
@@ -304,8 +339,9 @@ void restore_row(RowRun& row, const RowSamples& samples, unsigned most)
 {
     require_samples(samples, samples.samples_s.size(), true);
     add_samples(row, samples);
-    if (samples_in_run(row) > most)
-        throw std::domain_error(fmt::format("{} has more than {} samples of a run", row_name(row.key), most));
+    if (samples_in_run(row) > max_rounds * most)
+        throw std::domain_error(
+            fmt::format("{} has more than {} samples of a run", row_name(row.key), max_rounds * most));
 }
 
 EarlierSamples restore_samples(std::vector<RowRun>& rows, const Journal& journal)
@@ -415,6 +451,9 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
         log.begin_run(run);
         for (const auto& group : groups)
             if (register_rows(group, sweep)) google.run();
+        // Google's own reports are of as many samples for each row.
+        const bool exact = options.exact_samples || flags.repetitions || flags.format || !flags.out.empty();
+        if (!exact && result.runs == 1) sample_on(rows, sweep, watch, budget, google);
         if (sweep.failure) std::rethrow_exception(sweep.failure);
         count_samples(rows);
     }

@@ -10,7 +10,7 @@ namespace tetrace {
 
 /// Result of the timed part; the samples are in the rows.
 struct Measurement {
-    unsigned samples = 0; ///< per row and run
+    unsigned samples = 0; ///< per row and run; noisy rows may have more
     unsigned runs = 1;
     bool lowered = false; ///< fewer than asked for, because of the budget
     double wall_s = 0;
@@ -25,10 +25,11 @@ struct Measurement {
 /// Takes samples of every row that is ok or flawed, with Google Benchmark, interleaved at random, after an untimed pass
 /// of each: those on GPUs with each other, then those on the host, so that no GPU rests while a processor works. One
 /// sample traces all selected views, in one launch or in as few as memory allows (joined_views()), again and again for
-/// --sample-time; its seconds are the device's, per pass. The hits of each view in the last sample must still equal the
-/// verified ones. Some samples are followed by a pass with a launch for each view (latency_passes()). Rows that fail
-/// end with their reason, and so do rows for which the budget has no time. GPUs are asked for their clocks, power and
-/// throttling during each sample (see Sampler). Meanwhile the pulse is taken, and rows learn what it says of their
+/// --sample-time; its seconds are the device's, per pass. Unless --samples is given, a row that is noisy then gets up
+/// to three times as many samples, while the budget lasts. The hits of each view in the last sample must still equal
+/// the verified ones. Some samples are followed by a pass with a launch for each view (latency_passes()). Rows that
+/// fail end with their reason, and so do rows for which the budget has no time. GPUs are asked for their clocks, power
+/// and throttling during each sample (see Sampler). Meanwhile the pulse is taken, and rows learn what it says of their
 /// rates. Writes the file of --benchmark_out. With options.runs above 1 all of it is done that often, each time with
 /// new sessions. After an interrupt, rows keep the samples that they have. shared: a watch; and a journal, which gets
 /// the samples now and then, or has some already, which are not taken again. Throws Error{invalid_input} if that file,

@@ -305,8 +305,14 @@ std::vector<OptionRow> judging_options()
         {"Measuring", "--samples", "N",
          "Samples, 3 to 10000. Of 'bench' and of rivals for each row: a sample traces all selected views together, "
          "repeatedly for --sample-time. Of 'reproduce' for each row and view, or batch of searches. Fewer than 5 give "
-         "no interval, here and in 'compare'. Default: 10; of 'reproduce' 5, except for rivals.",
-         bit(Verb::bench) | bit(Verb::reproduce), false, set_count("--samples", &Options::samples, 3, 10000)},
+         "no interval, here and in 'compare'. Default: 10, and up to 30 for rows that are noisy, while --budget lasts; "
+         "of "
+         "'reproduce' 5, except for rivals.",
+         bit(Verb::bench) | bit(Verb::reproduce), false,
+         [](Options& o, const std::string& v) {
+             set_count("--samples", &Options::samples, 3, 10000)(o, v);
+             o.exact_samples = true;
+         }},
         {"Measuring", "--runs", "N",
          "Measure N times, 1 to 100: each run opens every row's session again, warms it up and takes --samples. "
          "Times differ more between runs than within one (memory, driver, machine), so intervals of ratios then "

@@ -26,9 +26,14 @@ std::string timed_sentence(const BenchResult& result)
     const std::string in_all =
         measurement.wall_s > 0 ? fmt::format(", {} in all", seconds_text(measurement.wall_s)) : "";
     const char* const few = measurement.samples < min_samples ? " Fewer than 5 samples give no interval." : "";
-    std::string text = fmt::format("medians of {}{} samples per row{}, rows interleaved at random{}.",
+    std::size_t most = 0;
+    for (const RowRecord& row : result.rows)
+        most = std::max(most, row.samples_s.size());
+    const std::string more =
+        measurement.runs == 1 && most > measurement.samples ? fmt::format(", up to {} if they were noisy", most) : "";
+    std::string text = fmt::format("medians of {}{} samples per row{}{}, rows interleaved at random{}.",
                                    measurement.runs > 1 ? fmt::format("{} runs of ", measurement.runs) : "",
-                                   measurement.samples, instead, in_all);
+                                   measurement.samples, instead, more, in_all);
     if (!result.scenes.empty()) {
         const ResultValue scene(result.scenes.front(), "scene");
         std::uint32_t passes = 1;

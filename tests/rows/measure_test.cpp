@@ -134,6 +134,30 @@ TEST_F(Measure, an_interrupt_leaves_rows_the_samples_that_they_have)
         EXPECT_EQ(status_of(row), Status::ok) << reason_of(row);
 }
 
+// A calibration that is slow at first disturbs the first samples of both rows.
+TEST_F(Measure, a_noisy_row_is_sampled_on_while_the_budget_lasts_unless_the_number_was_asked_for)
+{
+    const auto samples_with = [&](bool exact, double budget_s) {
+        set_up_rows();
+        options_.samples = 6;
+        options_.exact_samples = exact;
+        const Pulses::Work slow_until_the_20th = [taken = 0]() mutable {
+            return std::optional(++taken < 20 ? 0.02 : 0.01);
+        };
+        double now_s = 0; // the pulse is due before each sample
+        Budget budget(budget_s, [&] { return now_s += 3; });
+        const Measurement measured =
+            measure_rows(rows_, options_, read_benchmark_flags({}), budget, slow_until_the_20th);
+        EXPECT_EQ(measured.samples, 6u);
+        return rows_[0].samples_s.size();
+    };
+    EXPECT_EQ(samples_with(true, 1e9), 6u);
+    EXPECT_GT(samples_with(false, 1e9), 6u);
+    EXPECT_LE(rows_[0].samples_s.size(), 18u);
+    EXPECT_EQ(rows_[0].run_samples.size(), 1u);
+    EXPECT_EQ(samples_with(false, 100), 6u) << "nothing is left of the budget";
+}
+
 TEST_F(Measure, every_row_has_its_samples_each_of_all_views)
 {
     const Measurement measured = measure_rows(rows_, options_, read_benchmark_flags({}));
