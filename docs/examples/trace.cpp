@@ -11,8 +11,8 @@ try {
     std::printf("%llu triangles, %llu tets\n", (unsigned long long)triangles, (unsigned long long)tets);
     std::vector<tetrace::Ray> rays;
     for (int i = 1; i < 10; ++i) { // from the box's left side to its right side
-        const auto at = [i](double from, double to) { return float(from + i * (to - from) / 10); };
-        rays.push_back({{float(low[0]), at(low[1], high[1]), at(low[2], high[2])}, 0, {1, 0, 0}, 1e30f});
+        const double y = low[1] + i * (high[1] - low[1]) / 10, z = low[2] + i * (high[2] - low[2]) / 10;
+        rays.push_back({{float(low[0]), float(y), float(z)}, 0, {1, 0, 0}, 1e30f});
     }
     for (const tetrace::Hit& hit : tracer.trace(rays))
         if (hit.triangle == TETRACE_NO_HIT) std::puts("no hit");
