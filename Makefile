@@ -21,7 +21,7 @@ help:
 	@echo "make fuzz     libFuzzer (clang) on what tetrace reads, FUZZ_SECONDS=60 each; TARGETS='ply journal': only those"
 	@echo "make build    install what is missing, build build/release/bin/tetrace"
 	@echo "make bundle   build build/release/bundle, a folder to copy to a machine with a GPU and run there"
-	@echo "make deb      build packages of this Debian: tetrace, and tetrace-builder under licences of its own"
+	@echo "make deb      build packages of this Debian: tetrace, libtetrace-dev, and tetrace-builder under licences of its own"
 	@echo "make release  all of a release in build/release-files: bundle, small build, packages, container, checksums"
 	@echo "make cluster-test  share a run by mpirun, Slurm and GNU parallel, only on this machine; VIEWS=0-1281: all views"
 	@echo "make format   format the sources"
