@@ -3,7 +3,7 @@
 cmake_minimum_required(VERSION 3.25)
 include(${SOURCE}/libraries.cmake)
 
-file(REMOVE_RECURSE ${FOLDER} ${FOLDER}.tar.xz)
+file(REMOVE_RECURSE ${FOLDER} ${FOLDER}.tar.gz)
 file(COPY ${PROGRAM} DESTINATION ${FOLDER}/bin)
 list(APPEND left_to_the_system "^libstdc\\+\\+" "^libgcc_s") # drivers may need newer ones than a program carries along
 copy_libraries("${PROGRAM}" "" ${FOLDER}/lib libraries)
@@ -17,8 +17,8 @@ configure_file(${SOURCE}/README.small.in ${FOLDER}/README @ONLY)
 
 get_filename_component(place ${FOLDER} DIRECTORY)
 get_filename_component(name ${FOLDER} NAME)
-execute_process(COMMAND tar -C ${place} --sort=name --owner=0 --group=0 --numeric-owner --mtime=@0 -cJf ${FOLDER}.tar.xz ${name}
+execute_process(COMMAND tar -C ${place} --sort=name --owner=0 --group=0 --numeric-owner --mtime=@0 -czf ${FOLDER}.tar.gz ${name}
   COMMAND_ERROR_IS_FATAL ANY)
-file(SIZE ${FOLDER}.tar.xz bytes)
+file(SIZE ${FOLDER}.tar.gz bytes)
 math(EXPR kilobytes "${bytes} / 1024")
-message(STATUS "${FOLDER}.tar.xz: ${kilobytes} KiB, needs glibc ${GLIBC}")
+message(STATUS "${FOLDER}.tar.gz: ${kilobytes} KiB, needs glibc ${GLIBC}")

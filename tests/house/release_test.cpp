@@ -45,9 +45,9 @@ TEST(Release, has_a_checksum_of_each_file_and_refuses_missing_parts)
          {"bundle/run-all", "tetrace_V_amd64.deb", "tetrace-builder_V_amd64.deb", "libtetrace-dev_V_amd64.deb"})
         write_file(folder / ("build/" + std::regex_replace(part, std::regex("V"), version())), part);
     EXPECT_NE(run(release), 0);
-    EXPECT_TRUE(contains(read_text(folder / "log"), "tetrace-check-" + version() + "-*.tar.xz is missing"));
+    EXPECT_TRUE(contains(read_text(folder / "log"), "tetrace-check-" + version() + "-*.tar.gz is missing"));
 
-    write_file(folder / ("small/tetrace-check-" + version() + "-linux-x.tar.xz"), "small");
+    write_file(folder / ("small/tetrace-check-" + version() + "-linux-x.tar.gz"), "small");
     ASSERT_EQ(run(release), 0) << read_text(folder / "log");
     EXPECT_TRUE(contains(read_text(folder / "log"), "without a container"));
     EXPECT_EQ(run("cd out && sha256sum --strict --check SHA256SUMS"), 0);
