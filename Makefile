@@ -7,7 +7,7 @@ first_layouts = half32,bvh2
 # QUICK=1: one scene, small images, under a minute once all is built.
 scenes = $(if $(QUICK),--scene bunny)
 
-.PHONY: help bench first test test-all sanitize sanitize-threads fuzz build bundle deb cluster-test format lint clean
+.PHONY: help bench first test test-all sanitize sanitize-threads fuzz build bundle deb release cluster-test format lint clean
 
 help:
 	@echo "make bench    install what is missing, build, run the main job; table, JSON, page, pictures (build/bench/);"
@@ -21,7 +21,8 @@ help:
 	@echo "make fuzz     libFuzzer (clang) on what tetrace reads, FUZZ_SECONDS=60 each; TARGETS='ply journal': only those"
 	@echo "make build    install what is missing, build build/release/bin/tetrace"
 	@echo "make bundle   build build/release/bundle, a folder to copy to a machine with a GPU and run there"
-	@echo "make deb      build packages of this Debian: tetrace, and tetrace-builder under licences of its own"
+	@echo "make deb      build packages of this Debian: tetrace, libtetrace-dev, and tetrace-builder under licences of its own"
+	@echo "make release  all of a release in build/release-files: bundle, small build, packages, container, checksums"
 	@echo "make cluster-test  share a run by mpirun, Slurm and GNU parallel, only on this machine; VIEWS=0-1281: all views"
 	@echo "make format   format the sources"
 	@echo "make lint     check formatting, and the sources with clang-tidy"
@@ -65,6 +66,11 @@ deb: build
 	cmake --build --preset release -j $(JOBS)
 	cd build/release && cpack
 	@ls build/release/*.deb
+
+release: bundle deb
+	cmake --preset small -G Ninja
+	cmake --build --preset small -j $(JOBS) --target small
+	scripts/release build/release build/small build/release-files
 
 cluster-test: build
 	@scripts/install-packages cluster
@@ -110,7 +116,7 @@ lint:
 	scripts/check-format
 	cmake --preset debug -G Ninja -DBUILD_TESTING=ON
 	cmake --build --preset debug -j $(JOBS)
-	run-clang-tidy -quiet -j $(JOBS) -p build/debug '$(CURDIR)/(core|kernels|backends|scenes|bench|tests)/.*'
+	run-clang-tidy -quiet -j $(JOBS) -p build/debug '$(CURDIR)/(core|kernels|backends|scenes|embed|bench|tests)/.*'
 
 clean:
 	rm -rf build

@@ -4,7 +4,8 @@
 # one source for vectors of several widths.
 file(GLOB_RECURSE headers RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
   ${PROJECT_SOURCE_DIR}/core/*.h ${PROJECT_SOURCE_DIR}/kernels/layouts/layout.h ${PROJECT_SOURCE_DIR}/backends/*.h
-  ${PROJECT_SOURCE_DIR}/scenes/*.h ${PROJECT_SOURCE_DIR}/bench/*.h)
+  ${PROJECT_SOURCE_DIR}/scenes/*.h ${PROJECT_SOURCE_DIR}/embed/*.h
+  ${PROJECT_SOURCE_DIR}/bench/*.h)
 list(FILTER headers EXCLUDE REGEX "^backends/openmp/packet/")
 if(NOT TARGET tetrace_builder_lib)
   list(FILTER headers EXCLUDE REGEX "^scenes/builder/")

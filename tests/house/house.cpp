@@ -32,7 +32,7 @@ void read_includes(const fs::path& root, const std::string& file, std::vector<In
 Sources read_sources(const fs::path& root)
 {
     Sources sources;
-    for (const char* floor : {"kernels", "core", "scenes", "backends", "bench", "tests"}) {
+    for (const char* floor : {"kernels", "core", "scenes", "backends", "embed", "bench", "tests"}) {
         if (!fs::exists(root / floor)) continue;
         for (const auto& entry : fs::recursive_directory_iterator(root / floor)) {
             if (!entry.is_regular_file()) continue;
