@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 
+#ifdef TETRACE_WITHOUT_STORED_TETS
+#define STORED(symbol, file) static const unsigned char stored_##symbol[1] = {}, *stored_end_##symbol = stored_##symbol
+#else
 // The assembler reads the file. clang-format off
 #define STORED(symbol, file)                                                                                           \
     asm(".pushsection .rodata\n.globl stored_" #symbol ", stored_end_" #symbol "\n.hidden stored_" #symbol             \
@@ -10,6 +13,7 @@
         "\"\nstored_end_" #symbol ":\n.popsection");                                                                   \
     extern "C" __attribute__((visibility("hidden"))) const unsigned char stored_##symbol[], stored_end_##symbol[]
 // clang-format on
+#endif
 
 STORED(bunny_1, "bunny-1.tets.xz");
 STORED(armadillo_1, "armadillo-1.tets.xz");
