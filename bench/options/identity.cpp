@@ -160,8 +160,11 @@ std::vector<std::filesystem::path> named_paths(const Options& options)
 {
     std::vector<std::filesystem::path> paths(options.scenes.begin(), options.scenes.end());
     paths.insert(paths.end(), options.files.begin(), options.files.end());
-    for (const auto* path : {&options.out, &options.junit, &options.picture_folder})
+    for (const auto* path : {&options.out, &options.junit, &options.picture_folder, &options.code_folder})
         if (*path) paths.push_back(**path);
+    if (options.own_cameras) paths.emplace_back(options.own_cameras->file);
+    for (const std::string& flag : options.benchmark_flags)
+        paths.emplace_back(flag.substr(flag.find('=') + 1));
     return paths;
 }
 

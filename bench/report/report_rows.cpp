@@ -65,7 +65,6 @@ std::optional<RowRate> rate_of(const ResultValue& row, const std::vector<double>
     rate.bytes_per_step = positive_or_nothing(*rates, "bytes_per_step");
     rate.ceiling_bytes_per_s = positive_or_nothing(*rates, "ceiling_bytes_per_s");
     rate.launch_share = launch_share(times);
-    if (const auto noisy = times.find("noisy")) rate.noisy = noisy->flag();
     return rate;
 }
 

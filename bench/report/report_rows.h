@@ -16,7 +16,6 @@ struct RowRate {
     std::optional<double> msteps_per_s, bytes_per_step;
     std::optional<double> ceiling_bytes_per_s; ///< of the level of memory that holds the scene; old results lack it
     std::optional<double> launch_share;        ///< launching and waiting, as a share of the wall time
-    bool noisy = false;
 };
 
 /// A row on the page. Refers to its file.

@@ -24,7 +24,7 @@ struct CheckFindings {
 [[nodiscard]] RowFacts check_facts(const RowRecord& row);
 
 /// Every row, flat.
-[[nodiscard]] Table check_table(const std::vector<RowRecord>& rows);
+[[nodiscard]] Table check_table(const std::vector<RowRecord>& rows, const RunOrigin& origin);
 
 /// What `check` prints, and `show` prints again.
 [[nodiscard]] Sheet check_sheet(const CheckFindings& found);
@@ -52,8 +52,5 @@ struct RunAgain {
 /// What a run of `bench` or `check` printed, made from its result by what made it then. A line at the end names what
 /// the result does not have. Throws Error{invalid_input} for results of other verbs, and as read_rows() does.
 [[nodiscard]] RunAgain run_again(const ResultFile& file);
-
-/// A result's `load` and `pulses`, and how many of its rows and searches were timed, noisy and disturbed.
-[[nodiscard]] Steadiness read_steadiness(const ResultValue& section);
 
 } // namespace tetrace

@@ -1,5 +1,6 @@
 #include "bench/report/campaign/campaign.h"
 
+#include "bench/output/trust.h"
 #include "bench/results/result_comparison.h"
 #include "bench/terminal/text.h"
 #include "core/base/error.h"
@@ -74,6 +75,7 @@ void add_rate(ReadResult& read, const ResultFile& file, const ResultRow& row, co
     rate.rate.mrays_per_s = *row.mrays_per_s;
     rate.rate.samples_s = row.samples_s;
     rate.rate.pulse = pulse_of(file.head, row);
+    rate.rate.noisy = row.noisy;
     read.rates.push_back(std::move(rate));
 }
 
@@ -91,7 +93,10 @@ std::string search_label(const ResultRow& row)
 ReadResult read_one(const std::filesystem::path& path)
 {
     const ResultFile file = read_result(path);
-    ReadResult read{{path, file.head, day_of(file.head.date), {}, {}, {}}, {}};
+    ReadResult read{{path, file.head, day_of(file.head.date)}, {}};
+    const Steadiness steadiness = read_steadiness(file.section());
+    read.result.timed = steadiness.timed;
+    read.result.noisy = steadiness.noisy;
     for (const ResultRow* row : file.timed_rows())
         ++read.result.statuses[row->status];
     if (const auto load = file.section().find("load"))

@@ -17,10 +17,11 @@ namespace tetrace {
 struct CampaignResult {
     std::filesystem::path path;
     ResultHead head;
-    std::optional<double> day;              ///< its date, in days since 1970-01-01 UTC; empty if it is none
-    std::map<Status, std::size_t> statuses; ///< rows and searches by status
-    std::string others;                     ///< processors that other work took while rows were timed
-    std::vector<std::size_t> machines;      ///< of its rates, each once
+    std::optional<double> day;                   ///< its date, in days since 1970-01-01 UTC; empty if it is none
+    std::map<Status, std::size_t> statuses = {}; ///< rows and searches by status
+    std::string others = {};                     ///< processors that other work took while rows were timed
+    std::size_t timed = 0, noisy = 0;            ///< rows and searches
+    std::vector<std::size_t> machines = {};      ///< of its rates, each once
 };
 
 /// A machine that others are compared with: the CPU of a host with a number of threads, its emulated devices, or a GPU.
@@ -35,6 +36,7 @@ struct CampaignRate {
     double mrays_per_s = 0;              ///< of searches, millions of those
     std::vector<double> samples_s;       ///< at least one
     RatePulse pulse = {};
+    bool noisy = false; ///< not to be relied on, by its own samples or its machine
 };
 
 /// All rates of the same work: the same row with the same rays and the same answers

@@ -89,12 +89,15 @@ Html result_table(const Campaign& campaign)
                      {"host"},
                      {"system"},
                      {"rows"},
+                     {"noisy", "of timed", true},
                      {"others", "processors", true}});
     for (const CampaignResult& result : campaign.results)
         table.add({date_html(result), text(letters_of(campaign, result)),
                    text_element("code", "", (result.path.parent_path().filename() / result.path.filename()).string()),
                    text(result.head.verb), text_element("code", "", result.head.commit), text(result.head.machine),
-                   text(result.head.system), text(statuses_text(result)), text(result.others)});
+                   text(result.head.system), text(statuses_text(result)),
+                   text(result.timed > 0 ? fmt::format("{} of {}", result.noisy, result.timed) : ""),
+                   text(result.others)});
     return table.html();
 }
 

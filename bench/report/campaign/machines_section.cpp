@@ -18,7 +18,8 @@ const char* const how_to_read_comparison =
     "each: its ratio to the rate of the first machine of the table. A line is the same work on all its machines: "
     "the same kernel, scene, views and size, and the same hits, bit for bit. Work that only one machine has done is "
     "not shown. NOISY, as in 'tetrace compare': calibration during the row's samples took 1.25 times its fastest, "
-    "so the ratio may be the machine's; the means exclude such a row. Emulated devices are APIs of GPUs that run on "
+    "so the ratio may be the machine's; the means exclude such a row. noisy: by the row's own samples. Emulated "
+    "devices are APIs of GPUs that run on "
     "the CPU, and say nothing about a GPU.";
 
 std::size_t machines_with(const CampaignWork& work, const std::vector<std::size_t>& machines)
@@ -51,7 +52,8 @@ Html rate_cell(const CampaignRate* rate, const CampaignRate* first)
 {
     if (rate == nullptr) return {};
     Html value = text(short_number(rate->mrays_per_s));
-    if (rate->pulse.is_noisy()) value += text_element("small", "", "NOISY");
+    if (rate->pulse.is_noisy() || rate->noisy)
+        value += text_element("small", "", rate->pulse.is_noisy() ? "NOISY" : "noisy");
     if (first == nullptr || first == rate) return value;
     return value + text_element("small", "", fmt::format("× {:.2f}", rate->mrays_per_s / first->mrays_per_s));
 }
@@ -149,12 +151,8 @@ Section machines_section(const Campaign& campaign)
     Section section{"compared-machines", "Machines compared", {}};
     for (const CampaignGroup& group : campaign.groups)
         section.content += group_html(campaign, group);
-    if (section.content.empty())
-        section.content =
-            paragraph("No two machines of these results did the same work. Measure the same scenes, views and size "
-                      "on each.");
-    else
-        section.content = note(how_to_read_comparison) + section.content;
+    if (section.content.empty()) return section;
+    section.content = note(how_to_read_comparison) + section.content;
     return section;
 }
 
