@@ -66,14 +66,15 @@ void check_output(const Options& options)
     check_writable("--out", *options.out);
 }
 
-void check_not_an_input(const std::filesystem::path& out, const std::vector<std::filesystem::path>& inputs)
+void check_not_an_input(const std::filesystem::path& out, const std::vector<std::filesystem::path>& inputs,
+                        const char* option)
 {
     for (const std::filesystem::path& input : inputs) {
         std::error_code not_there; // then they are different files
         if (std::filesystem::equivalent(out, input, not_there))
-            throw Error(ErrorKind::usage, fmt::format("--out: writing '{}' would replace the input '{}'; name another "
-                                                      "file",
-                                                      out.string(), input.string()));
+            throw Error(ErrorKind::usage,
+                        fmt::format("{}: writing '{}' would replace the input '{}'; name another file", option,
+                                    out.string(), input.string()));
     }
 }
 

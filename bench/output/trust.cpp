@@ -81,7 +81,7 @@ void count_rows(Steadiness& steadiness, const ResultValue& part)
     }
 }
 
-constexpr const char* again = "measure again on a calmer machine (docs/calm-machine.md).";
+constexpr const char* again = "measure again on a quieter machine (docs/calm-machine.md).";
 
 } // namespace
 

@@ -194,8 +194,8 @@ Html device_table(const ReportInput& input)
                                 std::string(name_of(device.kind))),
                    text(device.driver), device.memory, device.copy, device.launch, verdict_and_rest(device.self_test),
                    text(device.problem)});
-    if (table.empty()) return paragraph("These results name no device.");
-    return table.html() +
+    if (table.empty()) return {};
+    return heading("Devices") + table.html() +
            note("copy: memory of the device copied to its own memory, bytes read and written; launch: an empty "
                 "kernel, from launching to the end of waiting. Emulated devices are APIs of GPUs that run on the "
                 "CPU.");
@@ -235,7 +235,7 @@ Html scene_table(const ReportInput& input)
                        text(file.rows.empty() ? "" : steps_text(file, scene.name)),
                        text_element("code", "", scene.hash)});
         }
-    return table.empty() ? paragraph("These results name no scene.") : table.html();
+    return table.empty() ? Html() : heading("Scenes") + table.html();
 }
 
 /// Sentences about scenes and devices that were not available.
@@ -255,8 +255,7 @@ Html missing_list(const ReportInput& input)
 Section machine_section(const ReportInput& input)
 {
     return {"machines", "Machines and devices",
-            results_table(input) + heading("Devices") + device_table(input) + heading("Scenes") + scene_table(input) +
-                missing_list(input)};
+            results_table(input) + device_table(input) + scene_table(input) + missing_list(input)};
 }
 
 } // namespace tetrace

@@ -189,7 +189,7 @@ std::string report_page(const ReportInput& input)
 std::string campaign_page(const Campaign& campaign, const std::vector<std::filesystem::path>& pictures)
 {
     std::vector<Section> sections;
-    for (const auto make : {index_section, machines_section, trend_section})
+    for (const auto make : {index_section, machines_section, portability_section, trend_section})
         sections.push_back(make(campaign));
     if (!pictures.empty()) sections.push_back(picture_section({{}, {}, pictures, {}}));
     return page_of(page_head(trust_lines(campaign), facts_of(campaign), {}), sections);

@@ -80,6 +80,7 @@ void read_kernel(ReportRow& row, const ResultValue& value)
     read_into(row.structure, value.at("structure"));
     const std::string method = value.at("method").line(), layout = value.at("layout").line(),
                       math = value.at("math").line(), &schedule = row.row->schedule;
+    row.layout = layout;
     row.known_kernel = kernel_named(method, layout, math, schedule);
     if (row.known_kernel && !is_portable(*row.known_kernel)) {
         row.walk = is_embree(row.known_kernel->layout) ? embree_title(method, layout) : layout;

@@ -24,6 +24,7 @@ struct ReportRow {
     std::size_t index = 0; ///< in its file
     const ResultRow* row = nullptr;
     Structure structure = Structure::cdt;
+    std::string layout;
     std::string walk; ///< "maria tet80", and whatever differs from the defaults
     /// Empty if this program lacks the kernel: a page shows results of other versions too. That is why its rows are not
     /// RowRecords, for which read_rows() rejects such a result.

@@ -13,7 +13,7 @@
 namespace tetrace {
 
 /// The schema version of the results that this program writes; raised when a key changes its meaning or is removed.
-inline constexpr int schema_version = 2;
+inline constexpr unsigned schema_version = 2;
 
 /// What made a result, on what, when.
 struct ResultHead {
