@@ -23,6 +23,15 @@ bool are_two_with_samples(const std::vector<ResultFile>& files)
            });
 }
 
+/// "bunny: cdt maria tet80 vulkan"; of searches the row's name.
+Html label_of(const ReportInput& input, const ComparedRow& compared)
+{
+    for (const ReportRow& row : input.rows)
+        if (row.row == compared.before || row.row == compared.after)
+            return text(fmt::format("{}: {} {}", row.row->scene, row.kernel_and_rays(), row.api));
+    return text_element("code", "", compared.name());
+}
+
 Html ratio_of(const ComparedRow& row)
 {
     if (!row.change) return {};
@@ -70,8 +79,8 @@ Section comparison_section(const ReportInput& input)
         {{"row"}, {"B / A", {}, true}, {"verdict"}, {"A", "Mrays/s", true}, {"B", "Mrays/s", true}, {"why"}});
     for (const ComparedRow& row : input.comparison->rows) {
         if (row.outcome == RowOutcome::untimed) continue;
-        table.add({text_element("code", "", row.name()), ratio_of(row), badge(row.verdict()), rate_of(row.before),
-                   rate_of(row.after), text(row.note())});
+        table.add({label_of(input, row), ratio_of(row), badge(row.verdict()), rate_of(row.before), rate_of(row.after),
+                   text(row.note())});
     }
     section.content = note(how_to_read_changes) + table.html();
     return section;

@@ -65,7 +65,11 @@ Html chart_of(const StructureContest& contest)
          {contest.walk, contest.bvh, contest.fastest(Walk::maria), contest.fastest(Layout::bvh2)})
         if (row != nullptr && std::ranges::find(shown, row) == shown.end()) shown.push_back(row);
     std::ranges::stable_sort(shown, std::greater(), [](const ReportRow* row) { return row->rate->mrays_per_s; });
-    BarChart chart{answer_text(contest), "Mrays/s", {}};
+    BarChart chart{contest.is_shaky()
+                       ? fmt::format("{} on {}: noisy, no ratio to rely on", contest.group->scene.name, contest.device)
+                       : answer_text(contest),
+                   "Mrays/s",
+                   {}};
     for (const ReportRow* row : shown)
         chart.bars.push_back({row->name(),
                               row->kernel() + "  " + row->api,
@@ -76,9 +80,7 @@ Html chart_of(const StructureContest& contest)
                               row->rate->high,
                               {},
                               remark_of(*row)});
-    if (!contest.is_shaky()) return figure(answer_text(contest), draw(chart), "");
-    return figure(fmt::format("{} on {}: noisy, no ratio to rely on", contest.group->scene.name, contest.device),
-                  draw(chart), "noisy: " + answer_text(contest));
+    return figure(chart.label, draw(chart), contest.is_shaky() ? "noisy: " + answer_text(contest) : "");
 }
 
 /// "Rate of the tets on a device: bunny 1.41 of that of the fastest BVH, bvh cwbvh on cuda, armadillo ..." for each

@@ -111,7 +111,7 @@ TEST_F(ReportPage, of_two_results_begins_with_b_over_a_and_its_verdict)
     EXPECT_LT(head.find("B over A"), head.find("class=\"summary\""));
     EXPECT_LT(page.find("<section id=\"compared\""), page.find("<section id=\"machines\""));
     const std::string section = section_of(page, "compared");
-    EXPECT_TRUE(contains(section, "<code>row/bvh</code>")) << section;
+    EXPECT_TRUE(contains(section, "<td>cubes: bvh bvh2 cuda</td>")) << section;
     EXPECT_TRUE(contains(section, "0.50 [0.4"));
     EXPECT_TRUE(contains(section, "class=\"badge bad\""));
     EXPECT_FALSE(contains(section, "<small>noisy"));

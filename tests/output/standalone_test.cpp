@@ -48,6 +48,6 @@ TEST_F(ReportPage, charts_have_the_colours_of_their_series)
         if (chart.name.starts_with("rates-rates-of-the-gpus")) {
             const std::size_t cuda = api_series("cuda");
             EXPECT_TRUE(contains(chart.text, fmt::format("class=\"mark s{} ", cuda)));
-            EXPECT_TRUE(contains(chart.text, fmt::format(".s{} .bar {{ fill: #56b4e9; ", cuda))) << chart.text;
+            EXPECT_TRUE(contains(chart.text, fmt::format(".s{} .bar {{ fill: #009e73; ", cuda))) << chart.text;
         }
 }
