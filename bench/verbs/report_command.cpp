@@ -32,17 +32,28 @@ void write_portability(const std::filesystem::path& path, const Campaign& campai
     say(fmt::format("{}: {}", path.string(), counted(efficiencies.size(), "efficiency", "efficiencies")));
 }
 
-void write_charts(const std::filesystem::path& folder, const std::string& page)
+void make_chart_folder(const std::filesystem::path& folder)
 {
     std::error_code failed;
     std::filesystem::create_directories(folder, failed);
     if (failed)
         throw Error(ErrorKind::invalid_input,
                     fmt::format("--charts: cannot create the folder '{}': {}", folder.string(), failed.message()));
+}
+
+void write_charts(const std::filesystem::path& folder, const std::string& page)
+{
     for (const StandaloneChart& chart : standalone_charts(page)) {
         write_whole(folder / chart.name, chart.text);
         say((folder / chart.name).string());
     }
+}
+
+/// Next to the page.
+void write_other_files(const Options& options, const std::optional<Campaign>& campaign, const std::string& page)
+{
+    if (options.portability_csv) write_portability(*options.portability_csv, *campaign);
+    if (options.chart_folder) write_charts(*options.chart_folder, page);
 }
 
 } // namespace
@@ -55,12 +66,12 @@ int report_command(const Options& options)
     check_not_an_input(out, files);
     check_not_an_input(out, options.report_pictures);
     if (options.portability_csv) check_not_an_input(*options.portability_csv, files, "--portability");
+    if (options.chart_folder) make_chart_folder(*options.chart_folder);
     std::optional<Campaign> campaign;
     if (is_campaign || options.portability_csv) campaign = read_campaign(files);
     const std::string page = is_campaign ? page_of_folders(*campaign, options, files)
                                          : report_page(read_report_input(files, options.report_pictures));
-    if (options.portability_csv) write_portability(*options.portability_csv, *campaign);
-    if (options.chart_folder) write_charts(*options.chart_folder, page);
+    write_other_files(options, campaign, page);
     if (out == "-") {
         print(page);
         return 0;

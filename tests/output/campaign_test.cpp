@@ -99,6 +99,7 @@ TEST_F(CampaignPage, shows_the_newest_rate_of_each_machine_next_to_the_first)
     EXPECT_EQ(occurrences(machines, ">12.0<small>noisy</small><small>× 1.50</small>"), 3u)
         << "processor, GPU, emulated";
     EXPECT_FALSE(contains(machines, "5.00<"));
+    EXPECT_EQ(occurrences(machines, ">1 work, 1 noisy</text>"), 6u) << "means of both machines";
     EXPECT_EQ(occurrences(machines, "<svg"), 3u);
 }
 

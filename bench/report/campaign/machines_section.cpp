@@ -62,20 +62,28 @@ Html rate_cell(const CampaignRate* rate, const CampaignRate* first)
 struct Mean {
     double ratio = 1;
     std::size_t works = 0;
+    std::size_t noisy = 0; ///< those of which a rate is not to be relied on
+
+    [[nodiscard]] std::string note() const
+    {
+        return counted(works, "work", "works") + (noisy > 0 ? fmt::format(", {} noisy", noisy) : "");
+    }
 };
 
 std::optional<Mean> mean_over(const std::vector<const CampaignWork*>& works, std::size_t first, std::size_t machine)
 {
     double sum = 0;
-    std::size_t count = 0;
+    Mean mean;
     for (const CampaignWork* work : works) {
         const CampaignRate *a = work->newest_of(first), *b = work->newest_of(machine);
         if (a == nullptr || b == nullptr || a->pulse.is_noisy() || b->pulse.is_noisy()) continue;
         sum += std::log(b->mrays_per_s / a->mrays_per_s);
-        ++count;
+        ++mean.works;
+        mean.noisy += a->noisy || b->noisy;
     }
-    if (count == 0) return std::nullopt;
-    return Mean{std::exp(sum / static_cast<double>(count)), count};
+    if (mean.works == 0) return std::nullopt;
+    mean.ratio = std::exp(sum / static_cast<double>(mean.works));
+    return mean;
 }
 
 std::string column_title(const Campaign& campaign, std::size_t machine)
@@ -117,7 +125,7 @@ Html mean_chart(const Campaign& campaign, const CampaignGroup& group, const std:
                                   {},
                                   {},
                                   {},
-                                  counted(mean->works, "work", "works")});
+                                  mean->note()});
     return chart.bars.size() < 2 ? Html() : figure("", draw(chart), "");
 }
 
