@@ -1,3 +1,4 @@
+#include "bench/output/trust.h"
 #include "bench/report/charts/axis.h"
 #include "bench/report/sections.h"
 #include "bench/terminal/text.h"
@@ -20,6 +21,13 @@ Html count_at(const ResultValue& object, const char* key)
 {
     const auto value = object.find(key);
     return value ? text(with_commas(value->count())) : Html();
+}
+
+/// "3 of 30" timed rows.
+Html noisy_rows_of(const ResultValue& section)
+{
+    const Steadiness steadiness = read_steadiness(section);
+    return steadiness.timed == 0 ? Html() : text(fmt::format("{} of {}", steadiness.noisy, steadiness.timed));
 }
 
 /// How many processors other work took while rows were timed.
@@ -54,6 +62,7 @@ Html results_table(const ReportInput& input)
                      {"system"},
                      {"threads", {}, true},
                      {"samples", "per row", true},
+                     {"noisy", "rows", true},
                      {"others", "processors", true},
                      {"calibration", "slowest", true},
                      {"commit"},
@@ -66,8 +75,9 @@ Html results_table(const ReportInput& input)
         table.add({letter.empty() ? Html() : text_element("b", "", letter),
                    text_element("code", "", file.path.filename().string()), text(head.verb),
                    text_element("span", "date", minute_of(head.date)), text(head.machine), text(head.system),
-                   count_at(section, "threads"), count_at(section, "samples_a_row"), others_of(section),
-                   pulses_of(section), text_element("code", "", head.commit), text(section.text_at("compiler"))});
+                   count_at(section, "threads"), count_at(section, "samples_a_row"), noisy_rows_of(section),
+                   others_of(section), pulses_of(section), text_element("code", "", head.commit),
+                   text(section.text_at("compiler"))});
     }
     const bool tells = std::ranges::any_of(input.files, [](const ResultFile& file) {
         return file.section().find("load").has_value() || file.section().find("pulses").has_value();

@@ -87,30 +87,43 @@ Html trust_line(const std::string& letter, bool noisy, const std::string& senten
                    text_element("strong", "", letter.empty() ? "Trust" : "Trust " + letter) + text(": " + sentence));
 }
 
+/// Of many results, the noisy rows of all. counts: of a result, rows that are noisy, and that were timed.
+Html trust_sum(const std::vector<std::pair<std::size_t, std::size_t>>& counts)
+{
+    std::size_t noisy = 0, timed = 0, results = 0;
+    for (const auto& [noisy_rows, timed_rows] : counts) {
+        noisy += noisy_rows;
+        timed += timed_rows;
+        results += noisy_rows > 0;
+    }
+    if (timed == 0) return {};
+    return trust_line("", noisy > 0,
+                      fmt::format("{} of {} rows noisy, in {} of {}, which are listed below.", with_commas(noisy),
+                                  with_commas(timed), results, counted(counts.size(), "result", "results")));
+}
+
+constexpr std::size_t max_trust_lines = 6; // more push the answer from the first screen
+
 /// Whether to trust the rates, result by result, as `bench` and `show` say it.
 Html trust_lines(const ReportInput& input)
 {
     Html lines;
+    std::vector<std::pair<std::size_t, std::size_t>> counts;
     for (std::size_t i = 0; i < input.files.size(); ++i) {
         const Steadiness steadiness = read_steadiness(input.files[i].section());
+        counts.emplace_back(steadiness.noisy, steadiness.timed);
         if (steadiness.timed > 0)
             lines += trust_line(file_letter(i, input.files.size()), steadiness.noisy > 0, trust_text(steadiness));
     }
-    return lines;
+    return counts.size() <= max_trust_lines ? lines : trust_sum(counts);
 }
 
 Html trust_lines(const Campaign& campaign)
 {
-    std::size_t timed = 0, noisy = 0, results = 0;
-    for (const CampaignResult& result : campaign.results) {
-        timed += result.timed;
-        noisy += result.noisy;
-        results += result.noisy > 0;
-    }
-    if (timed == 0) return {};
-    return trust_line("", noisy > 0,
-                      fmt::format("{} of {} rows noisy, in {} of {}; the index has each result's.", with_commas(noisy),
-                                  with_commas(timed), results, counted(campaign.results.size(), "result", "results")));
+    std::vector<std::pair<std::size_t, std::size_t>> counts;
+    for (const CampaignResult& result : campaign.results)
+        counts.emplace_back(result.noisy, result.timed);
+    return trust_sum(counts);
 }
 
 /// The title over whether to trust the rates, facts that sum the results up, and what answers at once.

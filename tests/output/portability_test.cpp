@@ -83,7 +83,7 @@ TEST_F(Portability, is_a_cascade_of_each_application_on_the_page_of_a_folder)
 {
     const std::string section = section_of(campaign_page(campaign_of(three_platforms()), {}), "portability");
     EXPECT_TRUE(contains(section, "data-row=\"vulkan tet80  P 0.77, noisy\"")) << section;
-    EXPECT_TRUE(contains(section, "data-row=\"cuda tet80  P 0.00\""));
+    EXPECT_TRUE(contains(section, "data-row=\"cuda tet80  P 0, on 1 of 2\""));
     EXPECT_TRUE(contains(section, "0.75<small>noisy</small>"));
     EXPECT_LT(section.find("vulkan tet80  P"), section.find("cuda tet80  P")) << "the most portable first";
     EXPECT_TRUE(

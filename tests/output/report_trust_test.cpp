@@ -66,6 +66,12 @@ TEST_F(ReportPage, begins_with_whether_to_trust_its_rates)
     EXPECT_TRUE(contains(noisy, "1 of 2 rows noisy: do not trust the noisy ones; measure again on a quieter machine "
                                 "(docs/calm-machine.md).</p>"));
     EXPECT_FALSE(contains(noisy, "Trust C")) << "nothing was timed";
+    std::vector<json> many(7, pair_json());
+    many[2] = with_noise(pair_json(), 1);
+    const std::string sum = page_of(many);
+    EXPECT_TRUE(contains(sum, "</h1><p class=\"trust fair\"><strong>Trust</strong>: 1 of 14 rows noisy, in 1 of 7 "
+                              "results, which are listed below.</p>"));
+    EXPECT_TRUE(contains(section_of(sum, "machines"), ">1 of 2</td>"));
 }
 
 TEST_F(ReportPage, names_a_governor_and_a_battery_as_the_terminal_does)

@@ -22,6 +22,7 @@ struct Cascade {
     std::string application;
     std::map<std::string, const Efficiency*> platforms;
     double portability = 0;
+    std::size_t missing = 0; ///< platforms of the problem that did not run it
 
     [[nodiscard]] std::vector<double> descending() const
     {
@@ -37,7 +38,13 @@ struct Cascade {
     }
     [[nodiscard]] std::string label() const
     {
-        return fmt::format("{}  P {:.2f}{}", application, portability, is_noisy() ? ", noisy" : "");
+        return fmt::format("{}  P {}{}", application, portability_text(), is_noisy() ? ", noisy" : "");
+    }
+    /// "0.77", or "0, on 4 of 5".
+    [[nodiscard]] std::string portability_text() const
+    {
+        return missing == 0 ? fmt::format("{:.2f}", portability)
+                            : fmt::format("0, on {} of {}", platforms.size(), platforms.size() + missing);
     }
 };
 
@@ -61,8 +68,10 @@ std::vector<CascadeProblem> problems_of(const std::vector<Efficiency>& all)
         cascade->platforms[one.platform] = &one;
     }
     for (CascadeProblem& problem : problems) {
-        for (Cascade& cascade : problem.cascades)
+        for (Cascade& cascade : problem.cascades) {
             cascade.portability = performance_portability(cascade.descending(), problem.platforms.size());
+            cascade.missing = problem.platforms.size() - cascade.platforms.size();
+        }
         std::ranges::stable_sort(problem.cascades, [](const Cascade& a, const Cascade& b) {
             return std::pair(a.portability, a.platforms.size()) > std::pair(b.portability, b.platforms.size());
         });
@@ -90,7 +99,7 @@ Html cascade_table(const CascadeProblem& problem)
         columns.push_back({platform, {}, true});
     HtmlTable table(columns);
     for (const Cascade& cascade : problem.cascades) {
-        std::vector<Html> cells = {text(cascade.application), text(fmt::format("{:.2f}", cascade.portability))};
+        std::vector<Html> cells = {text(cascade.application), text(cascade.portability_text())};
         for (const std::string& platform : problem.platforms) {
             const auto found = cascade.platforms.find(platform);
             if (found == cascade.platforms.end()) {
