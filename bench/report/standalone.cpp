@@ -87,6 +87,13 @@ std::string marks_for(const std::string& chart, const std::string& page)
     return marks.empty() ? marks : "<defs>" + marks + "</defs>";
 }
 
+/// The section's name is not repeated.
+std::string name_of_chart(const std::string& section, const std::string& label)
+{
+    const std::string name = slug(label);
+    return name.starts_with(section) ? name : slug(section + "-" + label);
+}
+
 std::string section_before(const std::string& page, std::size_t chart)
 {
     const std::size_t section = page.rfind("<section id=\"", chart);
@@ -102,7 +109,7 @@ std::vector<StandaloneChart> standalone_charts(const std::string& page)
     std::map<std::string, int> names;
     for (std::size_t at = page.find(opening); at != std::string::npos; at = page.find(opening, at + 1)) {
         const std::string chart = page.substr(at, page.find("</svg>", at) + 6 - at);
-        const std::string name = slug(section_before(page, at) + "-" + between(chart, "aria-label=\"", "\""));
+        const std::string name = name_of_chart(section_before(page, at), between(chart, "aria-label=\"", "\""));
         const int number = ++names[name];
         const std::size_t content = chart.find('>') + 1;
         charts.push_back({name + (number > 1 ? fmt::format("-{}", number) : "") + ".svg",

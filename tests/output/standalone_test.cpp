@@ -39,13 +39,13 @@ TEST_F(ReportPage, charts_are_well_formed_files_that_need_nothing_else)
         ++drawn;
     EXPECT_EQ(charts.size(), drawn);
     EXPECT_GE(drawn, 10u);
-    EXPECT_TRUE(names.contains("rates-rates-of-the-gpus-on-cubes-2-views-of-smoke-at-24-16-primary-rays.svg"));
+    EXPECT_TRUE(names.contains("rates-of-the-gpus-on-cubes-2-views-of-smoke-at-24-16-primary-rays.svg"));
 }
 
 TEST_F(ReportPage, charts_have_the_colours_of_their_series)
 {
     for (const StandaloneChart& chart : standalone_charts(page_of({bench_json()})))
-        if (chart.name.starts_with("rates-rates-of-the-gpus")) {
+        if (chart.name.starts_with("rates-of-the-gpus")) {
             const std::size_t cuda = api_series("cuda");
             EXPECT_TRUE(contains(chart.text, fmt::format("class=\"mark s{} ", cuda)));
             EXPECT_TRUE(contains(chart.text, fmt::format(".s{} .bar {{ fill: #009e73; ", cuda))) << chart.text;
