@@ -164,7 +164,7 @@ Sheet machines_sheet(const nlohmann::json& merged)
 void set_origin(nlohmann::json& section, const std::vector<ShardResult>& shards)
 {
     const json& first = shards.front().section();
-    for (const char* key : {"host", "label"}) {
+    for (const char* key : {"host", "label", "conditions"}) {
         section.erase(key);
         if (first.contains(key)) section[key] = first[key];
     }

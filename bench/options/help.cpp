@@ -220,19 +220,22 @@ const VerbHelp verb_help[] = {
      "  tetrace show bench.json --columns mrays_per_s,spread,status\n"
      "  tetrace show check.json --format markdown\n"},
     {Verb::report, "write one HTML page from results",
-     "Writes one self-contained page from any number of result files: machines and devices, rates with their spread, "
-     "APIs compared with intervals, each device's roofline with its rows on it, the matrix of check, what inspect "
-     "found, and pictures. The page loads nothing and runs no script. It follows the reader's choice of light or "
+     "Writes one self-contained page from any number of result files: whether to trust their rates, for two results "
+     "how B compares with A, machines and devices, rates with their spread, APIs compared with intervals, each "
+     "device's roofline with its rows on it, the matrix of check, what inspect found, and pictures. The page loads "
+     "nothing and runs no script. It follows the reader's choice of light or "
      "dark, and can be printed. Rows of several results share a chart if they traced the same rays through the same "
      "scene. Emulated devices and GPUs never share one.\n\n"
      "For a FOLDER, it writes the page of a campaign, from all results (.json) in the folder and its subfolders: an "
      "index of machines and results; machines compared with each other, by the newest rate of each, if they did the "
-     "same work; and each machine's rates by date, with a verdict for the last change. A file that is not a result is "
-     "left out, and listed with the reason. Machines are distinguished by the --label of their runs, or else by their "
+     "same work; how portable each API's performance is; and each machine's rates by date, with a verdict for the "
+     "last change. A file that is not a result is left out, and listed with the reason. Machines are distinguished by "
+     "the --label of their runs, or else by their "
      "CPUs; results that record neither are grouped by folder.",
      "  tetrace report bench.json check.json --out report.html\n"
      "  tetrace report results/ --out campaign.html\n"
-     "  tetrace report gpu.json cpu.json --image bunny-0-normals.png,bunny-0-steps.png\n"},
+     "  tetrace report gpu.json cpu.json --image bunny-0-normals.png,bunny-0-steps.png\n"
+     "  tetrace report before.json after.json --charts figures\n"},
     {Verb::merge, "make one result from the shards of a run",
      "Reads the results that 'bench', 'check' or 'reproduce' wrote with --shard, each with its journal (FILE.journal) "
      "next to it, and makes the result of the whole run: the same counts, verdicts and hashes as without shards, and "

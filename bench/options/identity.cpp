@@ -160,8 +160,12 @@ std::vector<std::filesystem::path> named_paths(const Options& options)
 {
     std::vector<std::filesystem::path> paths(options.scenes.begin(), options.scenes.end());
     paths.insert(paths.end(), options.files.begin(), options.files.end());
-    for (const auto* path : {&options.out, &options.junit, &options.picture_folder})
+    for (const auto* path : {&options.out, &options.junit, &options.picture_folder, &options.code_folder})
         if (*path) paths.push_back(**path);
+    if (options.own_cameras) paths.emplace_back(options.own_cameras->file);
+    constexpr std::string_view out = "--benchmark_out=";
+    for (const std::string& flag : options.benchmark_flags)
+        if (flag.starts_with(out)) paths.emplace_back(flag.substr(out.size()));
     return paths;
 }
 

@@ -375,6 +375,14 @@ std::vector<OptionRow> report_options()
          "Add this picture to the page: a PNG or PPM file, as 'tetrace render' writes it. May be repeated, or a "
          "list with commas. Default: only the pictures named by figures in the results.",
          bit(Verb::report), true, [](Options& o, const std::string& v) { o.report_pictures.emplace_back(v); }},
+        {"Output", "--charts", "FOLDER",
+         "Also write each chart of the page into this folder, as an SVG file that needs nothing else, for papers and "
+         "slides; its name says what it shows. Default: none.",
+         bit(Verb::report), false, set_path("--charts", &Options::chart_folder)},
+        {"Output", "--portability", "FILE.csv",
+         "Also write the application efficiency of each API and layout on each device, for tools of performance "
+         "portability: problem, platform, application, efficiency (docs/report.md). Default: none.",
+         bit(Verb::report), false, set_path("--portability", &Options::portability_csv)},
     };
 }
 

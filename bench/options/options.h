@@ -163,7 +163,9 @@ struct Options {
     std::optional<std::filesystem::path> junit;          ///< of `check`
     std::optional<std::filesystem::path> picture_folder; ///< of `check`: pictures of the differences
 
-    std::vector<std::filesystem::path> report_pictures; ///< of `report`: PNG files
+    std::vector<std::filesystem::path> report_pictures;   ///< of `report`: PNG files
+    std::optional<std::filesystem::path> chart_folder;    ///< of `report`: for the charts as SVG files
+    std::optional<std::filesystem::path> portability_csv; ///< of `report`: for efficiencies on each platform
 
     std::optional<std::filesystem::path> out;
     std::optional<Format> format;

@@ -110,26 +110,6 @@ std::string apis_text(const BenchResult& result)
     return fmt::format("{}", fmt::join(parts, "; "));
 }
 
-std::string load_text(const std::optional<MachineLoad>& load)
-{
-    if (!load) return "the load while measuring is not known";
-    std::string text = fmt::format("other processes used {:.2f} of {} CPUs while measuring, load average {:.1f}",
-                                   load->others, load->processors, load->average);
-    if (load->throttling.periods > 0)
-        text += fmt::format("; the container's CPU quota stopped this run {} times, for {:.1f} s",
-                            load->throttling.periods, load->throttling.seconds);
-    return text;
-}
-
-std::string pulses_text(const std::vector<Pulse>& pulses)
-{
-    std::string text;
-    for (const Pulse& pulse : pulses)
-        text += fmt::format("; calibration of {}: {} runs, slowest {:.2f}x the fastest",
-                            pulse.of == "host" ? "the host" : pulse.of, pulse.readings.size(), pulse.ratio());
-    return text;
-}
-
 } // namespace
 
 Sheet answer_of(const BenchResult& result)
@@ -145,31 +125,12 @@ Sheet answer_of(const BenchResult& result)
     if (const std::string apis = apis_text(result); !apis.empty()) compared += (compared.empty() ? "" : ". ") + apis;
     if (!compared.empty()) sheet.labelled("Compared", compared + ".");
     if (is_timed(result)) {
-        Steadiness steadiness{result.measurement.load, result.measurement.pulses};
+        Steadiness steadiness{result.measurement.load, result.measurement.pulses, result.conditions};
         for (const RowRecord& row : result.rows)
             steadiness.count(row);
         sheet.labelled("Trust", trust_text(steadiness));
     }
     return sheet;
-}
-
-void Steadiness::count(const RowRecord& row)
-{
-    const auto figures = figures_of(row);
-    if (!figures) return;
-    ++timed;
-    noisy += figures->noisy ? 1 : 0;
-    disturbed += row.disturbance.empty() ? 0 : 1;
-}
-
-std::string trust_text(const Steadiness& all)
-{
-    const std::string what =
-        fmt::format("{}{}; {} of {} rows noisy", load_text(all.load), pulses_text(all.pulses), all.noisy, all.timed);
-    if (all.disturbed == all.timed || (all.load && !all.load->is_quiet()))
-        return what + ": do not trust these rates; measure again on a quieter machine.";
-    if (all.disturbed > 0) return what + ": do not trust the noisy ones; measure again on a quieter machine.";
-    return what + (2 * all.noisy > all.timed ? ": trust only differences that the intervals confirm." : ".");
 }
 
 } // namespace tetrace

@@ -147,9 +147,8 @@ std::string failure_text(const RowRecord& row, Status status)
     return fmt::format("{}: {}", name_of(status), reason);
 }
 
-nlohmann::json bench_json(const BenchResult& result, const Options& options)
+nlohmann::json bench_json(const BenchResult& result, nlohmann::json section)
 {
-    nlohmann::json section = result_head(options);
     section["samples_a_row"] = result.measurement.samples * result.measurement.runs;
     if (result.measurement.runs > 1) section["runs"] = result.measurement.runs;
     section["samples_lowered"] = result.measurement.lowered;
@@ -288,9 +287,11 @@ Sheet bench_sheet(const BenchResult& result)
     return sheet;
 }
 
-Report bench_report(const BenchResult& result, const Options& options)
+Report bench_report(const BenchResult& result, const Options& options, nlohmann::json head)
 {
-    Report report{{}, flat_table(result), bench_json(result, options)};
+    nlohmann::json json = bench_json(result, std::move(head));
+    const RunOrigin origin(ResultValue(json, "the result").at("tetrace"));
+    Report report{{}, flat_table(result, origin), std::move(json)};
     if (options.brief) {
         report.sheet.labelled("Machine", machine_sentence(ResultValue(report.json, "result").at("tetrace")));
         report.sheet.gap();

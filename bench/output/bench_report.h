@@ -6,6 +6,7 @@
 #include "bench/measuring/scene_rows.h"
 #include "bench/output/report.h"
 #include "bench/output/row_fields.h"
+#include "bench/output/trust.h"
 #include "bench/results/result_value.h"
 
 #include <string>
@@ -16,6 +17,7 @@ namespace tetrace {
 struct BenchResult {
     std::vector<RowRecord> rows;
     Measurement measurement;
+    HostConditions conditions;
     std::vector<RowDevice> devices;
     std::vector<std::optional<Comparison>> comparisons; ///< row by row
     std::vector<std::optional<Comparison>> best_bvhs;   ///< row by row, with the fastest BVH
@@ -34,7 +36,8 @@ struct BenchResult {
 /// What `bench` prints, and `show` prints again.
 [[nodiscard]] Sheet bench_sheet(const BenchResult& result);
 
-[[nodiscard]] Report bench_report(const BenchResult& result, const Options& options);
+/// head: as result_head() makes it.
+[[nodiscard]] Report bench_report(const BenchResult& result, const Options& options, nlohmann::json head);
 
 /// A scene's heading: counts, size, build; shared by bench and check. scene: as results record it. Throws
 /// Error{invalid_input} where it lacks one of them.
@@ -49,18 +52,6 @@ struct BenchResult {
 /// What a run found, in three lines: the fastest row of each scene; CDT compared with BVH, and each API with openmp;
 /// whether to trust the rates. Empty if nothing was timed.
 [[nodiscard]] Sheet answer_of(const BenchResult& result);
-
-/// What says whether a run's rates are to be trusted.
-struct Steadiness {
-    std::optional<MachineLoad> load = {}; ///< empty if the system does not tell
-    std::vector<Pulse> pulses = {};
-    std::size_t timed = 0, noisy = 0, disturbed = 0; ///< rows
-
-    void count(const RowRecord& row);
-};
-
-/// Whether to trust them, as a sentence. Precondition: a row was timed.
-[[nodiscard]] std::string trust_text(const Steadiness& all);
 
 /// What the fields of each row are read from.
 [[nodiscard]] std::vector<RowFacts> facts_of(const BenchResult& result);
@@ -78,6 +69,6 @@ struct Steadiness {
 [[nodiscard]] std::vector<std::string> bench_columns();
 
 /// Every row with all its figures, flat.
-[[nodiscard]] Table flat_table(const BenchResult& result);
+[[nodiscard]] Table flat_table(const BenchResult& result, const RunOrigin& origin);
 
 } // namespace tetrace

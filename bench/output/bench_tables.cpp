@@ -144,11 +144,13 @@ std::vector<std::string> bench_columns()
     return sheet.column_keys();
 }
 
-Table flat_table(const BenchResult& result)
+Table flat_table(const BenchResult& result, const RunOrigin& origin)
 {
     Table table(columns_of(&RowField::csv));
-    for (const RowFacts& facts : facts_of(result))
+    for (RowFacts& facts : facts_of(result)) {
+        facts.origin = &origin;
         table.add(cells_of(&RowField::csv, facts));
+    }
     return table;
 }
 

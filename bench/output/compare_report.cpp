@@ -94,10 +94,19 @@ std::string differences_text(const ResultComparison& comparison)
                               {"/host/threads", "the threads that the process may use"},
                               {"/threads", "the threads that it used"},
                               {"/packet_lanes", "the lanes of packets"}};
+    constexpr Fact conditions[] = {{"/conditions/governor", "the CPUs' frequency governor"},
+                                   {"/conditions/turbo", "turbo"},
+                                   {"/conditions/smt", "SMT"},
+                                   {"/conditions/on_battery", "mains or battery"}};
     std::vector<std::string> differences;
     for (const Fact& fact : facts)
         if (recorded_at(*comparison.before, fact.pointer) != recorded_at(*comparison.after, fact.pointer))
             differences.emplace_back(fact.name);
+    for (const Fact& fact : conditions) { // which older results and some systems do not report
+        const auto before = recorded_at(*comparison.before, fact.pointer),
+                   after = recorded_at(*comparison.after, fact.pointer);
+        if (!before.is_null() && !after.is_null() && before != after) differences.emplace_back(fact.name);
+    }
     for (const ComparedRow& row : comparison.rows)
         if (row.outcome == RowOutcome::compared &&
             (row.before->device != row.after->device || row.before->driver != row.after->driver)) {
@@ -152,29 +161,6 @@ std::size_t too_few_count(const ResultComparison& comparison)
 {
     return static_cast<std::size_t>(
         std::ranges::count_if(comparison.rows, [](const ComparedRow& row) { return row.has_too_few_samples(); }));
-}
-
-std::string summary_text(const ResultComparison& comparison)
-{
-    const std::size_t compared = comparison.count(RowOutcome::compared);
-    std::string text = fmt::format("{} of {} rows", compared, comparison.rows.size());
-    const char* separator = ": ";
-    for (const SpeedVerdict verdict :
-         {SpeedVerdict::same, SpeedVerdict::faster, SpeedVerdict::slower, SpeedVerdict::unsure})
-        if (const std::size_t count = count_of(comparison, verdict); count > 0) {
-            text += fmt::format("{}{} {}", separator, count, name_of(verdict));
-            separator = ", ";
-        }
-    if (const std::size_t count = noisy_count(comparison); count > 0)
-        text += fmt::format("{}{} NOISY", separator, count);
-    if (const std::size_t count = comparison.count(RowOutcome::different); count > 0)
-        text += fmt::format("; {} DIFFERENT, not compared", count);
-    if (const std::size_t count = too_few_count(comparison); count > 0)
-        text += fmt::format("; {} with fewer than {} samples, so no interval", count, min_samples);
-    if (const auto mean = comparison.geometric_mean())
-        text += fmt::format("; geometric mean of B / A {:.3f}{}", *mean,
-                            noisy_count(comparison) > 0 ? ", with the NOISY rows in it" : "");
-    return text + ".";
 }
 
 /// A line for each row that has become slower, one for all that failed, and one for all that are missing.
@@ -249,6 +235,29 @@ nlohmann::json source_json(const ResultFile& file)
 }
 
 } // namespace
+
+std::string summary_text(const ResultComparison& comparison)
+{
+    const std::size_t compared = comparison.count(RowOutcome::compared);
+    std::string text = fmt::format("{} of {} rows", compared, comparison.rows.size());
+    const char* separator = ": ";
+    for (const SpeedVerdict verdict :
+         {SpeedVerdict::same, SpeedVerdict::faster, SpeedVerdict::slower, SpeedVerdict::unsure})
+        if (const std::size_t count = count_of(comparison, verdict); count > 0) {
+            text += fmt::format("{}{} {}", separator, count, name_of(verdict));
+            separator = ", ";
+        }
+    if (const std::size_t count = noisy_count(comparison); count > 0)
+        text += fmt::format("{}{} NOISY", separator, count);
+    if (const std::size_t count = comparison.count(RowOutcome::different); count > 0)
+        text += fmt::format("; {} DIFFERENT, not compared", count);
+    if (const std::size_t count = too_few_count(comparison); count > 0)
+        text += fmt::format("; {} with fewer than {} samples, so no interval", count, min_samples);
+    if (const auto mean = comparison.geometric_mean())
+        text += fmt::format("; geometric mean of B / A {:.3f}{}", *mean,
+                            noisy_count(comparison) > 0 ? ", with the NOISY rows in it" : "");
+    return text + ".";
+}
 
 std::string source_text(const ResultFile& file)
 {

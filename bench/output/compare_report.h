@@ -9,6 +9,9 @@ namespace tetrace {
 /// A file, and what made it, on what, when.
 [[nodiscard]] std::string source_text(const ResultFile& file);
 
+/// How many rows were compared, with which verdicts, and the geometric mean.
+[[nodiscard]] std::string summary_text(const ResultComparison& comparison);
+
 /// A line that says what the rates of searches are, where any of these rows is one.
 void add_search_note(Sheet& sheet, const ResultComparison& comparison);
 

@@ -3,6 +3,7 @@
 #include "bench/measuring/comparison.h"
 #include "bench/measuring/figures.h"
 #include "bench/measuring/row_devices.h"
+#include "bench/results/result_file.h"
 #include "bench/results/result_value.h"
 
 #include <functional>
@@ -10,6 +11,15 @@
 #include <type_traits>
 
 namespace tetrace {
+
+/// What a result says of itself, for its rows.
+struct RunOrigin {
+    /// section: `tetrace` of a result. Throws Error{invalid_input} as read_result() does.
+    explicit RunOrigin(const ResultValue& section) : head(read_head(section)), scenes(read_scenes(section)) {}
+
+    ResultHead head;
+    std::vector<ResultScene> scenes;
+};
 
 /// The sources of a row's fields: its record, and what is computed from it and from other rows. Refers to the record.
 struct RowFacts {
@@ -25,6 +35,7 @@ struct RowFacts {
     std::optional<CopyShares> copy_shares;
     // Set only by `check`.
     std::optional<std::string> conformity;
+    const RunOrigin* origin = nullptr; ///< set only for CSV
 };
 
 /// How a field is read from a part of a row, or from a member of that part. If it is a member, or has set(), a result's

@@ -1,5 +1,6 @@
 #include "bench/output/report.h"
 
+#include "bench/options/host_conditions.h"
 #include "bench/options/identity.h"
 #include "bench/results/result_file.h"
 #include "bench/results/result_value.h"
@@ -8,6 +9,7 @@
 #include "bench/terminal/text.h"
 #include "core/base/error.h"
 #include "core/base/files.h"
+#include "core/base/printable.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -64,14 +66,15 @@ void check_output(const Options& options)
     check_writable("--out", *options.out);
 }
 
-void check_not_an_input(const std::filesystem::path& out, const std::vector<std::filesystem::path>& inputs)
+void check_not_an_input(const std::filesystem::path& out, const std::vector<std::filesystem::path>& inputs,
+                        const char* option)
 {
     for (const std::filesystem::path& input : inputs) {
         std::error_code not_there; // then they are different files
         if (std::filesystem::equivalent(out, input, not_there))
-            throw Error(ErrorKind::usage, fmt::format("--out: writing '{}' would replace the input '{}'; name another "
-                                                      "file",
-                                                      out.string(), input.string()));
+            throw Error(ErrorKind::usage,
+                        fmt::format("{}: writing '{}' would replace the input '{}'; name another file", option,
+                                    out.string(), input.string()));
     }
 }
 
@@ -144,6 +147,9 @@ nlohmann::json result_head(const Options& options)
     for (const auto& [key, number] : numbers)
         if (number) head["host"][key] = *number;
     if (!options.label.empty()) head["label"] = options.label;
+    if (nlohmann::json conditions = conditions_json(host_conditions()); !conditions.empty())
+        head["conditions"] = std::move(conditions);
+    if (!options.words.empty()) head["command"] = printable_line(command_of(options.words));
     if (const Shard shard = shard_of(options); !shard.is_whole()) {
         head["shard"] = {{"number", shard.number}, {"of", shard.of}, {"arguments", options.arguments}};
         if (!options.job.empty()) head["shard"]["job"] = options.job;

@@ -22,8 +22,9 @@ struct Report {
 void check_output(const Options& options);
 
 /// Fails before a result overwrites one of its own inputs. Throws Error{usage} naming the option and both files where
-/// `out` is one of the inputs, even under another name.
-void check_not_an_input(const std::filesystem::path& out, const std::vector<std::filesystem::path>& inputs);
+/// `out` is one of the inputs, even under another name. option: that names `out`.
+void check_not_an_input(const std::filesystem::path& out, const std::vector<std::filesystem::path>& inputs,
+                        const char* option = "--out");
 
 /// Leaves no new file. Throws Error{invalid_input} naming the option, the file and the system's reason if the file
 /// cannot be written.

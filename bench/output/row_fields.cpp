@@ -493,7 +493,7 @@ const std::vector<RowField>& row_fields()
     static const std::vector<RowField> all = [] {
         std::vector<RowField> fields;
         for (const auto& part : {identity_fields(), rate_fields(), comparison_fields(), bandwidth_fields(),
-                                 time_fields(), answer_fields()})
+                                 time_fields(), answer_fields(), origin_fields()})
             fields.insert(fields.end(), part.begin(), part.end());
         return fields;
     }();

@@ -81,6 +81,10 @@ inline constexpr const char* ratio_group = "ratio";
 /// A row's speed compared with others: its reference under another API, the fastest BVH, Embree's single rays.
 [[nodiscard]] std::vector<RowField> comparison_fields();
 
+/// What made the row's result, on what and when, and its rays: the same in all rows, so that CSV of several results can
+/// be put together.
+[[nodiscard]] std::vector<RowField> origin_fields();
+
 /// A row as results record it: those fields of row_fields() for which it has a value.
 [[nodiscard]] nlohmann::json row_json(const RowFacts& facts);
 

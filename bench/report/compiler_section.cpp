@@ -144,10 +144,7 @@ Section compiler_section(const ReportInput& input)
             tables += heading(with_letter(compilers_of(*programs), file, input.files.size())) + skipped_list(skipped) +
                       programs_of(*programs, skipped);
         }
-    section.is_empty = tables.empty();
-    section.content = tables.empty() ? paragraph("None of these results is from 'tetrace inspect --out FILE.json', "
-                                                 "which compiles every kernel for GPUs.")
-                                     : note(how_to_read_programs) + tables;
+    if (!tables.empty()) section.content = note(how_to_read_programs) + tables;
     return section;
 }
 

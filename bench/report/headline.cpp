@@ -20,6 +20,7 @@ struct StructureContest : Contest<ReportRow> {
     const ReportRow *walk = nullptr, *bvh = nullptr; ///< the fastest
 
     [[nodiscard]] double ratio() const { return walk->rate->mrays_per_s / bvh->rate->mrays_per_s; }
+    [[nodiscard]] bool is_shaky() const { return is_noisy(*walk) || is_noisy(*bvh); }
 };
 
 /// Of primary rays; GPUs' first. Emulated devices are in none: they are not to be ranked. Nor are kernels ranked with
@@ -64,7 +65,11 @@ Html chart_of(const StructureContest& contest)
          {contest.walk, contest.bvh, contest.fastest(Walk::maria), contest.fastest(Layout::bvh2)})
         if (row != nullptr && std::ranges::find(shown, row) == shown.end()) shown.push_back(row);
     std::ranges::stable_sort(shown, std::greater(), [](const ReportRow* row) { return row->rate->mrays_per_s; });
-    BarChart chart{answer_text(contest), "Mrays/s", {}};
+    BarChart chart{contest.is_shaky()
+                       ? fmt::format("{} on {}: noisy, no ratio to rely on", contest.group->scene.name, contest.device)
+                       : answer_text(contest),
+                   "Mrays/s",
+                   {}};
     for (const ReportRow* row : shown)
         chart.bars.push_back({row->name(),
                               row->kernel() + "  " + row->api,
@@ -75,7 +80,7 @@ Html chart_of(const StructureContest& contest)
                               row->rate->high,
                               {},
                               remark_of(*row)});
-    return figure(answer_text(contest), draw(chart), "");
+    return figure(chart.label, draw(chart), contest.is_shaky() ? "noisy: " + answer_text(contest) : "");
 }
 
 /// "Rate of the tets on a device: bunny 1.41 of that of the fastest BVH, bvh cwbvh on cuda, armadillo ..." for each
@@ -86,9 +91,9 @@ Html other_answers(std::span<const StructureContest> contests)
     for (const StructureContest& contest : contests) {
         const auto same = std::ranges::find(lines, contest.device, &std::pair<std::string, std::string>::first);
         std::string& line = (same == lines.end() ? lines.emplace_back(contest.device, "") : *same).second;
-        append_item(
-            line, "; ",
-            fmt::format("{} {:.2f} of that of {}", contest.group->scene.name, contest.ratio(), bvh_text(contest)));
+        append_item(line, "; ",
+                    fmt::format("{} {:.2f} of that of {}{}", contest.group->scene.name, contest.ratio(),
+                                bvh_text(contest), contest.is_shaky() ? " (noisy)" : ""));
     }
     Html items;
     for (const auto& [device, line] : lines)

@@ -1,3 +1,4 @@
+#include "bench/output/trust.h"
 #include "bench/report/charts/axis.h"
 #include "bench/report/sections.h"
 #include "bench/terminal/text.h"
@@ -20,6 +21,13 @@ Html count_at(const ResultValue& object, const char* key)
 {
     const auto value = object.find(key);
     return value ? text(with_commas(value->count())) : Html();
+}
+
+/// "3 of 30" timed rows.
+Html noisy_rows_of(const ResultValue& section)
+{
+    const Steadiness steadiness = read_steadiness(section);
+    return steadiness.timed == 0 ? Html() : text(fmt::format("{} of {}", steadiness.noisy, steadiness.timed));
 }
 
 /// How many processors other work took while rows were timed.
@@ -54,6 +62,7 @@ Html results_table(const ReportInput& input)
                      {"system"},
                      {"threads", {}, true},
                      {"samples", "per row", true},
+                     {"noisy", "rows", true},
                      {"others", "processors", true},
                      {"calibration", "slowest", true},
                      {"commit"},
@@ -66,8 +75,9 @@ Html results_table(const ReportInput& input)
         table.add({letter.empty() ? Html() : text_element("b", "", letter),
                    text_element("code", "", file.path.filename().string()), text(head.verb),
                    text_element("span", "date", minute_of(head.date)), text(head.machine), text(head.system),
-                   count_at(section, "threads"), count_at(section, "samples_a_row"), others_of(section),
-                   pulses_of(section), text_element("code", "", head.commit), text(section.text_at("compiler"))});
+                   count_at(section, "threads"), count_at(section, "samples_a_row"), noisy_rows_of(section),
+                   others_of(section), pulses_of(section), text_element("code", "", head.commit),
+                   text(section.text_at("compiler"))});
     }
     const bool tells = std::ranges::any_of(input.files, [](const ResultFile& file) {
         return file.section().find("load").has_value() || file.section().find("pulses").has_value();
@@ -194,8 +204,8 @@ Html device_table(const ReportInput& input)
                                 std::string(name_of(device.kind))),
                    text(device.driver), device.memory, device.copy, device.launch, verdict_and_rest(device.self_test),
                    text(device.problem)});
-    if (table.empty()) return paragraph("These results name no device.");
-    return table.html() +
+    if (table.empty()) return {};
+    return heading("Devices") + table.html() +
            note("copy: memory of the device copied to its own memory, bytes read and written; launch: an empty "
                 "kernel, from launching to the end of waiting. Emulated devices are APIs of GPUs that run on the "
                 "CPU.");
@@ -235,7 +245,7 @@ Html scene_table(const ReportInput& input)
                        text(file.rows.empty() ? "" : steps_text(file, scene.name)),
                        text_element("code", "", scene.hash)});
         }
-    return table.empty() ? paragraph("These results name no scene.") : table.html();
+    return table.empty() ? Html() : heading("Scenes") + table.html();
 }
 
 /// Sentences about scenes and devices that were not available.
@@ -255,8 +265,7 @@ Html missing_list(const ReportInput& input)
 Section machine_section(const ReportInput& input)
 {
     return {"machines", "Machines and devices",
-            results_table(input) + heading("Devices") + device_table(input) + heading("Scenes") + scene_table(input) +
-                missing_list(input)};
+            results_table(input) + device_table(input) + scene_table(input) + missing_list(input)};
 }
 
 } // namespace tetrace

@@ -1,6 +1,7 @@
 #include "bench/report/page.h"
 
 #include "bench/options/identity.h"
+#include "bench/output/trust.h"
 #include "bench/report/campaign/campaign.h"
 #include "bench/report/html/svg.h"
 #include "bench/report/png.h"
@@ -20,12 +21,7 @@ Section picture_section(const ReportInput& input)
     Html pictures;
     for (const std::filesystem::path& path : input.pictures)
         pictures += picture_figure(path);
-    section.is_empty = pictures.empty();
-    section.content =
-        pictures.empty()
-            ? paragraph("No picture was given: --image accepts the PNG and PPM files that 'tetrace render' writes "
-                        "(the surface, and the steps of each ray), and 'tetrace check' if a row differs.")
-            : side_by_side(pictures);
+    if (!pictures.empty()) section.content = side_by_side(pictures);
     return section;
 }
 
@@ -85,14 +81,59 @@ std::string claim_summary(const ReportInput& input)
                                   verdicts[2].second);
 }
 
-/// The title over facts that sum the results up, and what answers at once.
-Html page_head(const std::vector<std::string>& facts, const Html& answer)
+Html trust_line(const std::string& letter, bool noisy, const std::string& sentence)
+{
+    return element("p", {{"class", noisy ? "trust fair" : "trust"}},
+                   text_element("strong", "", letter.empty() ? "Trust" : "Trust " + letter) + text(": " + sentence));
+}
+
+/// Of many results, the noisy rows of all. counts: of a result, rows that are noisy, and that were timed.
+Html trust_sum(const std::vector<std::pair<std::size_t, std::size_t>>& counts)
+{
+    std::size_t noisy = 0, timed = 0, results = 0;
+    for (const auto& [noisy_rows, timed_rows] : counts) {
+        noisy += noisy_rows;
+        timed += timed_rows;
+        results += noisy_rows > 0;
+    }
+    if (timed == 0) return {};
+    return trust_line("", noisy > 0,
+                      fmt::format("{} of {} rows noisy, in {} of {}, which are listed below.", with_commas(noisy),
+                                  with_commas(timed), results, counted(counts.size(), "result", "results")));
+}
+
+constexpr std::size_t max_trust_lines = 6; // more push the answer from the first screen
+
+/// Whether to trust the rates, result by result, as `bench` and `show` say it.
+Html trust_lines(const ReportInput& input)
+{
+    Html lines;
+    std::vector<std::pair<std::size_t, std::size_t>> counts;
+    for (std::size_t i = 0; i < input.files.size(); ++i) {
+        const Steadiness steadiness = read_steadiness(input.files[i].section());
+        counts.emplace_back(steadiness.noisy, steadiness.timed);
+        if (steadiness.timed > 0)
+            lines += trust_line(file_letter(i, input.files.size()), steadiness.noisy > 0, trust_text(steadiness));
+    }
+    return counts.size() <= max_trust_lines ? lines : trust_sum(counts);
+}
+
+Html trust_lines(const Campaign& campaign)
+{
+    std::vector<std::pair<std::size_t, std::size_t>> counts;
+    for (const CampaignResult& result : campaign.results)
+        counts.emplace_back(result.noisy, result.timed);
+    return trust_sum(counts);
+}
+
+/// The title over whether to trust the rates, facts that sum the results up, and what answers at once.
+Html page_head(const Html& trust, const std::vector<std::string>& facts, const Html& answer)
 {
     Html summary;
     for (const std::string& fact : facts)
         summary += text_element("li", "", fact);
     return element("header", {},
-                   text_element("h1", "", "tetrace report") +
+                   text_element("h1", "", "tetrace report") + trust +
                        text_element("p", "note",
                                     "Ray traversal through constrained Delaunay tetrahedralizations, measured and "
                                     "verified; written by tetrace " +
@@ -124,7 +165,7 @@ Html contents(const std::vector<Section>& sections)
 {
     Html links;
     for (const Section& section : sections)
-        if (!section.is_empty) links += element("a", {{"href", "#" + section.id}}, text(section.title));
+        links += element("a", {{"href", "#" + section.id}}, text(section.title));
     return element("nav", {}, links);
 }
 
@@ -133,8 +174,9 @@ Html meta(const char* key, const char* name, const char* content)
     return element("meta", {{key, name}, {"content", content}});
 }
 
-std::string page_of(const Html& header, const std::vector<Section>& sections)
+std::string page_of(const Html& header, std::vector<Section> sections)
 {
+    std::erase_if(sections, [](const Section& section) { return section.content.empty(); });
     Html body;
     for (const Section& section : sections)
         body += element("section", {{"id", section.id}}, text_element("h2", "", section.title) + section.content);
@@ -150,19 +192,20 @@ std::string page_of(const Html& header, const std::vector<Section>& sections)
 std::string report_page(const ReportInput& input)
 {
     std::vector<Section> sections;
-    for (const auto make : {machine_section, rate_section, ratio_section, roofline_section, conformance_section,
-                            compiler_section, paper_section, picture_section, time_section})
+    for (const auto make : {comparison_section, machine_section, rate_section, ratio_section, roofline_section,
+                            conformance_section, compiler_section, paper_section, picture_section, time_section})
         sections.push_back(make(input));
-    return page_of(page_head(facts_of(input), headline(input)), sections);
+    return page_of(page_head(trust_lines(input) + comparison_summary(input), facts_of(input), headline(input)),
+                   sections);
 }
 
 std::string campaign_page(const Campaign& campaign, const std::vector<std::filesystem::path>& pictures)
 {
     std::vector<Section> sections;
-    for (const auto make : {index_section, machines_section, trend_section})
+    for (const auto make : {index_section, machines_section, portability_section, trend_section})
         sections.push_back(make(campaign));
-    if (!pictures.empty()) sections.push_back(picture_section({{}, {}, pictures}));
-    return page_of(page_head(facts_of(campaign), {}), sections);
+    if (!pictures.empty()) sections.push_back(picture_section({{}, {}, pictures, {}}));
+    return page_of(page_head(trust_lines(campaign), facts_of(campaign), {}), sections);
 }
 
 ReportInput read_report_input(const std::vector<std::filesystem::path>& results,
@@ -174,6 +217,7 @@ ReportInput read_report_input(const std::vector<std::filesystem::path>& results,
     for (std::size_t file = 0; file < input.files.size(); ++file) // rows refer to files, which no longer move
         for (ReportRow& row : report_rows(input.files[file], file))
             input.rows.push_back(std::move(row));
+    input.comparison = comparison_of(input.files);
     input.pictures = std::move(pictures);
     return input;
 }

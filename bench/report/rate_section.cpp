@@ -100,7 +100,7 @@ std::string device_text(const ReportRow& row, std::size_t files)
 std::string remark_of(const ReportRow& row)
 {
     std::string text = row.row->status == Status::flawed ? row.row->reason : "";
-    if (row.rate && row.rate->noisy) text += text.empty() ? "noisy" : ", noisy";
+    if (is_noisy(row)) text += text.empty() ? "noisy" : ", noisy";
     return text;
 }
 
@@ -137,10 +137,7 @@ Section rate_section(const ReportInput& input)
 {
     Section section{"rates", "Rates", {}};
     const auto groups = rated_groups(input.files, input.rows);
-    if (groups.empty())
-        section.content += paragraph("No row of these results has a rate; 'tetrace bench --out FILE.json' measures.");
-    else
-        section.content += note(how_to_read_rates);
+    if (!groups.empty()) section.content += note(how_to_read_rates);
     for (std::size_t begin = 0; begin < groups.size();) {
         const std::string title = scene_title(groups[begin]);
         Html charts;
@@ -154,9 +151,7 @@ Section rate_section(const ReportInput& input)
         section.content += heading(title) + (shares.empty() ? Html() : note(shares)) + side_by_side(charts);
         begin = end;
     }
-    const Html unrated = rows_without_rate(input);
-    section.is_empty = groups.empty() && unrated.empty();
-    section.content += unrated;
+    section.content += rows_without_rate(input);
     return section;
 }
 
@@ -210,9 +205,7 @@ Section time_section(const ReportInput& input)
                 add_row(table, row, values[i], file_letter(file, input.files.size()));
     }
     Section section{"times", "Where the time goes", {}};
-    section.is_empty = table.rows().empty();
-    section.content = table.rows().empty() ? paragraph("No row of these results was timed.")
-                                           : note(how_to_read_times) + html_table(table).html();
+    if (!table.rows().empty()) section.content = note(how_to_read_times) + html_table(table).html();
     return section;
 }
 

@@ -11,7 +11,7 @@ namespace {
 const char* const how_to_read_ratios =
     "The rate of a row over that of the same kernel with another API on the same hardware: medians of the samples, "
     "with the 95 % interval of the ratio from the samples. A hollow dot's interval contains 1: the difference is "
-    "not significant. Rows with fewer than 5 samples have no interval, and are not shown.";
+    "not significant, or a rate is noisy. Rows with fewer than 5 samples have no interval, and are not shown.";
 
 /// Identifies one chart.
 struct RatioKey {
@@ -50,11 +50,14 @@ void add_ratio(std::vector<RatioGroup>& groups, const ReportInput& input, std::s
     const ResultValue name = ratio.at("row");
     const ReportRow& row = row_named(input, file, name);
     if (!row.row->device_kind) name.reject("is of a row without a device");
-    const RatioKey key{file, row.row->scene, row.rays, row.kind(), row_named(input, file, ratio.at("reference")).api};
+    const ReportRow& reference = row_named(input, file, ratio.at("reference"));
+    const bool noisy = is_noisy(row) || is_noisy(reference);
+    const RatioKey key{file, row.row->scene, row.rays, row.kind(), reference.api};
     auto group = std::ranges::find_if(groups, [&](const RatioGroup& other) { return other.key == key; });
     if (group == groups.end()) group = groups.insert(groups.end(), {key, {}});
-    group->intervals.push_back({row.name(), row.kernel() + "  " + row.api, "", api_series(row.row->backend),
-                                ratio_at(ratio, "ratio"), ratio_at(ratio, "low"), ratio_at(ratio, "high")});
+    group->intervals.push_back({row.name(), row.kernel() + "  " + row.api, noisy ? "noisy" : "",
+                                api_series(row.row->backend), ratio_at(ratio, "ratio"), ratio_at(ratio, "low"),
+                                ratio_at(ratio, "high"), noisy});
 }
 
 Html chart_of(const RatioGroup& group, const ReportInput& input)
@@ -96,7 +99,9 @@ Html tets_over_bvhs(const ReportInput& input)
         const ResultValue best = rates->at("best_bvh");
         const ReportRow& bvh = row_named(input, row.file, best);
         table.add({text(file_letter(row.file, files)), text(row.row->scene),
-                   text(row.kernel_and_rays() + " " + row.api), text(row.device), text(interval_text(*rates)),
+                   text(row.kernel_and_rays() + " " + row.api), text(row.device),
+                   text(interval_text(*rates)) +
+                       (is_noisy(row) || is_noisy(bvh) ? text_element("small", "", "noisy") : Html()),
                    text(bvh.kernel() + " " + bvh.api)});
     }
     if (table.empty()) return {};
@@ -117,18 +122,11 @@ Section ratio_section(const ReportInput& input)
             for (const ResultValue& ratio : ratios->items())
                 if (ratio.find("low")) add_ratio(groups, input, file, ratio);
     Section section{"ratios", "APIs compared", {}};
-    const Html over_bvhs = tets_over_bvhs(input);
-    section.is_empty = groups.empty() && over_bvhs.empty();
-    if (groups.empty()) {
-        section.content =
-            over_bvhs + paragraph("These results compare no APIs: 'tetrace bench' does if a kernel ran under two on "
-                                  "one piece of hardware.");
-        return section;
-    }
     Html charts;
     for (const RatioGroup& group : groups)
         charts += chart_of(group, input);
-    section.content = note(how_to_read_ratios) + side_by_side(charts) + over_bvhs;
+    if (!groups.empty()) section.content = note(how_to_read_ratios) + side_by_side(charts);
+    section.content += tets_over_bvhs(input);
     return section;
 }
 

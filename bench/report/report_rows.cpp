@@ -65,7 +65,6 @@ std::optional<RowRate> rate_of(const ResultValue& row, const std::vector<double>
     rate.bytes_per_step = positive_or_nothing(*rates, "bytes_per_step");
     rate.ceiling_bytes_per_s = positive_or_nothing(*rates, "ceiling_bytes_per_s");
     rate.launch_share = launch_share(times);
-    if (const auto noisy = times.find("noisy")) rate.noisy = noisy->flag();
     return rate;
 }
 
@@ -81,6 +80,7 @@ void read_kernel(ReportRow& row, const ResultValue& value)
     read_into(row.structure, value.at("structure"));
     const std::string method = value.at("method").line(), layout = value.at("layout").line(),
                       math = value.at("math").line(), &schedule = row.row->schedule;
+    row.layout = layout;
     row.known_kernel = kernel_named(method, layout, math, schedule);
     if (row.known_kernel && !is_portable(*row.known_kernel)) {
         row.walk = is_embree(row.known_kernel->layout) ? embree_title(method, layout) : layout;

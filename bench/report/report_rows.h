@@ -16,7 +16,6 @@ struct RowRate {
     std::optional<double> msteps_per_s, bytes_per_step;
     std::optional<double> ceiling_bytes_per_s; ///< of the level of memory that holds the scene; old results lack it
     std::optional<double> launch_share;        ///< launching and waiting, as a share of the wall time
-    bool noisy = false;
 };
 
 /// A row on the page. Refers to its file.
@@ -25,6 +24,7 @@ struct ReportRow {
     std::size_t index = 0; ///< in its file
     const ResultRow* row = nullptr;
     Structure structure = Structure::cdt;
+    std::string layout;
     std::string walk; ///< "maria tet80", and whatever differs from the defaults
     /// Empty if this program lacks the kernel: a page shows results of other versions too. That is why its rows are not
     /// RowRecords, for which read_rows() rejects such a result.

@@ -95,12 +95,7 @@ Section roofline_section(const ReportInput& input)
             for (const ResultValue& device : devices->items())
                 if (auto roof = roof_of(device, file, input)) roofs.push_back(*std::move(roof));
     Section section{"roofline", "Roofline", {}};
-    section.is_empty = roofs.empty();
-    if (roofs.empty())
-        section.content =
-            paragraph("No device of these results has both a measured copy bandwidth and a row with a step "
-                      "rate; 'tetrace bench' measures both in one run.");
-    else
+    if (!roofs.empty())
         section.content = note(how_to_read_roofs) + charts_of(roofs, DeviceKind::cpu, "Processors") +
                           charts_of(roofs, DeviceKind::gpu, "GPUs") +
                           charts_of(roofs, DeviceKind::emulated, "Emulated on the CPU");

@@ -2,6 +2,7 @@
 
 #include "bench/report/html/html.h"
 #include "bench/report/report_rows.h"
+#include "bench/results/result_comparison.h"
 
 #include <vector>
 
@@ -12,13 +13,23 @@ struct ReportInput {
     std::vector<ResultFile> files;
     std::vector<ReportRow> rows; ///< of all files; they refer to `files`
     std::vector<std::filesystem::path> pictures;
+    std::optional<ResultComparison> comparison; ///< of two results with samples that share work; refers to `files`
 };
+
+/// How two results with samples compare; empty for others, and if they share no work.
+[[nodiscard]] std::optional<ResultComparison> comparison_of(const std::vector<ResultFile>& files);
 
 /// The row's device, with its result's letter if there are several results.
 [[nodiscard]] std::string device_text(const ReportRow& row, std::size_t files);
 
 /// The series style (see svg.h) of a backend, the same in all charts; all unknown backends share the last one.
 [[nodiscard]] std::size_t api_series(const std::string& backend);
+
+/// Whether the row has a rate that is not to be relied on.
+[[nodiscard]] inline bool is_noisy(const ReportRow& row)
+{
+    return row.rate && row.row->noisy;
+}
 
 /// Remarks on a row's rate: why it is flawed, and whether it is noisy; empty if neither.
 [[nodiscard]] std::string remark_of(const ReportRow& row);
@@ -33,9 +44,13 @@ struct ReportInput {
 /// Empty if the results have neither.
 [[nodiscard]] Html headline(const ReportInput& input);
 
-// The page's sections, in order. If the results have nothing for a section, it says so in a sentence, and how to get
-// the data. All throw Error{invalid_input} naming file and key where a result is not as results/README.md describes.
+/// How two results compare, in one sentence, for the page's first screen; empty unless there are two with samples.
+[[nodiscard]] Html comparison_summary(const ReportInput& input);
 
+// The page's sections, in order; without content if the results have nothing for them. All throw Error{invalid_input}
+// naming file and key where a result is not as results/README.md describes.
+
+[[nodiscard]] Section comparison_section(const ReportInput& input);  ///< two results: B over A, row by row
 [[nodiscard]] Section machine_section(const ReportInput& input);     ///< results, devices, scenes
 [[nodiscard]] Section conformance_section(const ReportInput& input); ///< the matrix of `check`
 [[nodiscard]] Section

@@ -89,13 +89,13 @@ double duration(const ResultValue& value)
     return value.number();
 }
 
-std::string machine_of(const ResultValue& section, const std::string& cpu)
+std::string processor_of(const ResultValue& host)
 {
-    if (const auto label = section.find("label")) return label->line();
     std::string numbers;
     for (const char* const key : {"family", "model", "stepping"})
-        if (const auto number = section.at("host").find(key))
+        if (const auto number = host.find(key))
             numbers += fmt::format("{}{} {}", numbers.empty() ? "" : ", ", key, number->count());
+    const std::string cpu = host.at("cpu").line();
     return numbers.empty() ? cpu : fmt::format("{} ({})", cpu, numbers);
 }
 
@@ -106,27 +106,6 @@ std::optional<double> host_pulse_of(const ResultValue& section)
     for (const ResultValue& pulse : pulses->items())
         if (pulse.at("of").line() == "host") return duration(pulse.at("fastest_s"));
     return std::nullopt;
-}
-
-ResultHead read_head(const ResultValue& section)
-{
-    ResultHead head;
-    const ResultValue version = section.at("schema_version");
-    head.schema_version = version.count();
-    if (head.schema_version < oldest_schema_version || head.schema_version > schema_version)
-        version.reject(fmt::format("is {}, and this tetrace reads {} to {}: use the tetrace that wrote the file, or a "
-                                   "newer one",
-                                   head.schema_version, oldest_schema_version, schema_version));
-    head.verb = section.at("verb").line();
-    head.date = section.at("date").line();
-    head.version = section.at("version").line();
-    head.commit = section.at("commit").line();
-    head.cpu = section.at("host").at("cpu").line();
-    head.system = section.at("host").at("system").line();
-    head.machine = machine_of(section, head.cpu);
-    if (const auto threads = section.find("threads")) head.threads = threads->count();
-    head.host_pulse_s = host_pulse_of(section);
-    return head;
 }
 
 ResultScene read_scene(const ResultValue& value)
@@ -193,6 +172,7 @@ ResultRow read_any_row(const ResultValue& value)
     if (const auto times = value.find("times")) {
         if (const auto pulse = times->find("pulse")) row.pulse_ratio = pulse->number();
         if (const auto launches = times->find("launches")) row.launches = launches->count();
+        if (const auto noisy = times->find("noisy")) row.noisy = noisy->flag();
     }
     return row;
 }
@@ -267,6 +247,34 @@ std::vector<const ResultRow*> ResultFile::timed_rows() const
     return all;
 }
 
+ResultHead read_head(const ResultValue& section)
+{
+    ResultHead head;
+    const ResultValue version = section.at("schema_version");
+    head.schema_version = version.count();
+    if (head.schema_version < oldest_schema_version || head.schema_version > schema_version)
+        version.reject(fmt::format("is {}, and this tetrace reads {} to {}: use the tetrace that wrote the file, or a "
+                                   "newer one",
+                                   head.schema_version, oldest_schema_version, schema_version));
+    head.verb = section.at("verb").line();
+    head.date = section.at("date").line();
+    head.version = section.at("version").line();
+    head.commit = section.at("commit").line();
+    head.cpu = section.at("host").at("cpu").line();
+    head.system = section.at("host").at("system").line();
+    head.label = line_or_nothing(section, "label");
+    head.processor = processor_of(section.at("host"));
+    head.machine = head.label.empty() ? head.processor : head.label;
+    if (const auto threads = section.find("threads")) head.threads = threads->count();
+    head.host_pulse_s = host_pulse_of(section);
+    return head;
+}
+
+std::vector<ResultScene> read_scenes(const ResultValue& section)
+{
+    return read_named<ResultScene>(section, "scenes", read_scene);
+}
+
 DeviceKind device_kind_of(const ResultValue& device)
 {
     const ResultValue type = device.at("type");
@@ -287,7 +295,7 @@ ResultFile read_result(const std::filesystem::path& path)
     result.head = read_head(*section);
     // `tetrace scenes` lists other things under the same key.
     if (result.head.verb == "scenes") return result;
-    result.scenes = read_named<ResultScene>(*section, "scenes", read_scene);
+    result.scenes = read_scenes(*section);
     result.rows = read_named<ResultRow>(*section, "rows", read_row);
     if (const auto searches = section->find("searches")) {
         result.searches = read_named<ResultRow>(*searches, "rows", read_search);

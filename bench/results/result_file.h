@@ -13,7 +13,7 @@
 namespace tetrace {
 
 /// The schema version of the results that this program writes; raised when a key changes its meaning or is removed.
-inline constexpr int schema_version = 2;
+inline constexpr unsigned schema_version = 2;
 
 /// What made a result, on what, when.
 struct ResultHead {
@@ -21,7 +21,9 @@ struct ResultHead {
     std::string verb, date, version, commit, cpu, system;
     std::optional<double> host_pulse_s;   ///< the fastest of the run; empty if it was not taken
     std::optional<std::uint64_t> threads; ///< that rows and pulse used
-    std::string machine; ///< the user's label; else the CPU with family, model and stepping, if they are known
+    std::string label;                    ///< the user's name of the machine; empty if there is none
+    std::string processor;                ///< the CPU with family, model and stepping, if they are known
+    std::string machine;                  ///< the label, else the processor
 
     /// A device's name, but of the processor the machine's: several processors are called "AMD EPYC".
     [[nodiscard]] const std::string& shown(const std::string& device) const { return device == cpu ? machine : device; }
@@ -62,6 +64,7 @@ struct ResultRow {
     std::optional<double> mrays_per_s; ///< of the median sample; of searches, millions of those
     std::optional<double> pulse_ratio; ///< of calibration during its samples to the run's fastest
     std::uint64_t launches = 0;        ///< of a pass of a sample; 0: one for each view
+    bool noisy = false;                ///< not to be relied on, by its samples or because the machine was disturbed
     std::vector<double> samples_s;     ///< device seconds, each from 1e-12 to 1e12; empty if the row was not timed
 
     [[nodiscard]] std::string api() const { return api_name(backend, device_index); }
@@ -86,6 +89,11 @@ struct ResultFile {
     /// The rows of scenes, then those of searches.
     [[nodiscard]] std::vector<const ResultRow*> timed_rows() const;
 };
+
+/// The head and the scenes of a result's section `tetrace`, without its rows. Throws as read_result() does for a result
+/// that lacks a key or has one of another type.
+[[nodiscard]] ResultHead read_head(const ResultValue& section);
+[[nodiscard]] std::vector<ResultScene> read_scenes(const ResultValue& section);
 
 /// The kind of a device, from a device of a result. Throws Error{invalid_input} if its "type" names none.
 [[nodiscard]] DeviceKind device_kind_of(const ResultValue& device);

@@ -49,11 +49,14 @@ RowFacts check_facts(const RowRecord& row)
     return facts;
 }
 
-Table check_table(const std::vector<RowRecord>& rows)
+Table check_table(const std::vector<RowRecord>& rows, const RunOrigin& origin)
 {
     Table table(columns_of(&RowField::check));
-    for (const RowRecord& row : rows)
-        table.add(cells_of(&RowField::check, check_facts(row)));
+    for (const RowRecord& row : rows) {
+        RowFacts facts = check_facts(row);
+        facts.origin = &origin;
+        table.add(cells_of(&RowField::check, facts));
+    }
     return table;
 }
 
@@ -146,47 +149,6 @@ unsigned small_count(const ResultValue& value)
     return static_cast<unsigned>(std::min<std::uint64_t>(value.count(), most));
 }
 
-std::optional<MachineLoad> load_of(const ResultValue& section)
-{
-    const auto load = section.find("load");
-    if (!load) return std::nullopt;
-    MachineLoad read{load->at("others").number(), load->at("average").number(), small_count(load->at("processors"))};
-    read_member(read.throttling.periods, *load, "throttled_periods");
-    read_member(read.throttling.seconds, *load, "throttled_s");
-    return read;
-}
-
-std::vector<Pulse> pulses_of(const ResultValue& section)
-{
-    std::vector<Pulse> pulses;
-    const auto list = section.find("pulses");
-    if (!list) return pulses;
-    for (const ResultValue& value : list->items()) {
-        Pulse& pulse = pulses.emplace_back(Pulse{value.at("of").line(), {}});
-        for (const ResultValue& reading : value.at("readings").items()) {
-            const auto pair = reading.items();
-            if (pair.size() != 2 || pair[1].number() <= 0) reading.reject("is not a reading: write [when, seconds]");
-            pulse.readings.push_back({pair[0].number(), pair[1].number()});
-        }
-        if (pulse.readings.empty()) value.reject("is a calibration without readings");
-    }
-    return pulses;
-}
-
-void count_rows(Steadiness& steadiness, const ResultValue& part)
-{
-    const auto rows = part.find("rows");
-    if (!rows) return;
-    for (const ResultValue& row : rows->items()) {
-        const auto times = row.find("times");
-        if (!times || !times->find("median_s")) continue;
-        ++steadiness.timed;
-        const auto noisy = times->find("noisy");
-        steadiness.noisy += noisy && noisy->flag() ? 1 : 0;
-        steadiness.disturbed += times->find("disturbed") ? 1 : 0;
-    }
-}
-
 RunAgain bench_again(const ResultFile& file, bool brief)
 {
     const ResultValue section = file.section();
@@ -206,6 +168,7 @@ RunAgain bench_again(const ResultFile& file, bool brief)
     const Steadiness steadiness = read_steadiness(section);
     result.measurement.load = steadiness.load;
     result.measurement.pulses = steadiness.pulses;
+    result.conditions = steadiness.conditions;
     if (const auto timed = section.find("timed_s")) result.measurement.wall_s = timed->number();
     if (const auto asked = section.find("samples_asked")) result.samples_asked = small_count(*asked);
     if (const auto budget = section.find("budget_s")) result.budget_s = budget->number();
@@ -213,7 +176,7 @@ RunAgain bench_again(const ResultFile& file, bool brief)
     if (!brief && !section.find("timed_s") && is_timed(result))
         sheet.labelled("Not here", "how long the run took, how many samples were asked for, the size of the tets, and "
                                    "which APIs had no device: the result is of a version that did not record them.");
-    return {std::move(sheet), flat_table(result)};
+    return {std::move(sheet), flat_table(result, RunOrigin(section))};
 }
 
 RunAgain check_again(const ResultFile& file)
@@ -224,18 +187,10 @@ RunAgain check_again(const ResultFile& file)
         {&rows, scenes_of(section), sentences_at(section, "missing_devices"), section.find("interrupted").has_value()});
     if (const auto verdict = section.find("verdict"))
         sheet.append(CheckVerdict{verdict->at("conforms").flag(), verdict->at("text").line()}.line());
-    return {std::move(sheet), check_table(rows)};
+    return {std::move(sheet), check_table(rows, RunOrigin(section))};
 }
 
 } // namespace
-
-Steadiness read_steadiness(const ResultValue& section)
-{
-    Steadiness steadiness{load_of(section), pulses_of(section)};
-    count_rows(steadiness, section);
-    if (const auto searches = section.find("searches")) count_rows(steadiness, *searches);
-    return steadiness;
-}
 
 RunAgain run_again(const ResultFile& file, bool brief)
 {

@@ -24,7 +24,7 @@ struct CheckFindings {
 [[nodiscard]] RowFacts check_facts(const RowRecord& row);
 
 /// Every row, flat.
-[[nodiscard]] Table check_table(const std::vector<RowRecord>& rows);
+[[nodiscard]] Table check_table(const std::vector<RowRecord>& rows, const RunOrigin& origin);
 
 /// What `check` prints, and `show` prints again.
 [[nodiscard]] Sheet check_sheet(const CheckFindings& found);
@@ -53,8 +53,5 @@ struct RunAgain {
 /// the result does not have. brief: of `bench`, brief_sheet(). Throws Error{invalid_input} for results of other verbs,
 /// and as read_rows() does.
 [[nodiscard]] RunAgain run_again(const ResultFile& file, bool brief = false);
-
-/// A result's `load` and `pulses`, and how many of its rows and searches were timed, noisy and disturbed.
-[[nodiscard]] Steadiness read_steadiness(const ResultValue& section);
 
 } // namespace tetrace

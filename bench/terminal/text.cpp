@@ -210,4 +210,12 @@ std::string shell_word(const std::string& word)
     return text + "'";
 }
 
+std::string command_of(const std::vector<std::string>& arguments)
+{
+    std::string text = "tetrace";
+    for (const std::string& argument : arguments)
+        text += " " + shell_word(argument);
+    return text;
+}
+
 } // namespace tetrace

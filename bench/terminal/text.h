@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace tetrace {
 
@@ -58,5 +59,8 @@ void append_item(std::string& text, std::string_view separator, std::string_view
 
 /// A word of a command line: in single quotes where a shell would not take it as one word.
 [[nodiscard]] std::string shell_word(const std::string& word);
+
+/// A command line of tetrace's with these arguments, as a shell takes it.
+[[nodiscard]] std::string command_of(const std::vector<std::string>& arguments);
 
 } // namespace tetrace

@@ -55,6 +55,7 @@ BenchResult run_bench(const std::vector<RowKey>& keys, const Options& options, c
     const Recording shared{journal, nullptr, &watch, &budget};
     SceneRows run = open_and_verify(keys, options, {}, shared);
     result.measurement = measure_rows(run.rows, options, flags, shared);
+    result.conditions = host_conditions();
     result.rows = records_of(run.rows);
     result.devices = devices_of(result.rows);
     result.interrupted = is_interrupted();
@@ -88,7 +89,7 @@ int bench_command(const Options& options)
     if (flags.repetitions) head["repetitions"] = *flags.repetitions;
     const auto journal = open_journal(options, head);
     const BenchResult result = run_bench(keys, options, flags, journal.get());
-    const Report report = bench_report(result, options);
+    const Report report = bench_report(result, options, result_head(options));
     // Google Benchmark has already written its own format to standard output, if it was asked to.
     if (!flags.format)
         deliver(options, report);

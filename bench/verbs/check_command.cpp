@@ -56,8 +56,10 @@ nlohmann::json check_json(const Checked& checked, const Options& options)
 Report check_report(const Checked& checked, const Options& options)
 {
     const auto& rows = checked.rows;
-    Report report{check_sheet({&rows, checked.scenes, checked.missing, is_interrupted()}), check_table(rows),
-                  check_json(checked, options)};
+    nlohmann::json json = check_json(checked, options);
+    const RunOrigin origin(ResultValue(json, "the result").at("tetrace"));
+    Report report{check_sheet({&rows, checked.scenes, checked.missing, is_interrupted()}), check_table(rows, origin),
+                  std::move(json)};
     const auto verdict = verdict_of(checked, options);
     const Sheet last = verdict ? verdict->line() : Sheet();
     Sheet document = report.sheet;

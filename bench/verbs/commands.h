@@ -50,9 +50,6 @@ void say_how_to_go_on(const Options& options);
 /// does; empty where neither is so.
 void write_junit(const std::vector<RowRecord>& rows, const Options& options, const std::string& problem = {});
 
-/// A command line of tetrace's with these arguments, as a shell takes it.
-[[nodiscard]] std::string command_of(const std::vector<std::string>& arguments);
-
 /// What a long run says where it is interrupted and keeps nothing: how to begin again. Empty for a short one.
 [[nodiscard]] std::string words_when_begun(const Options& options);
 

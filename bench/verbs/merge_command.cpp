@@ -70,6 +70,13 @@ std::vector<json> scenes_of(const Shards& shards, const std::vector<std::uint32_
     return scenes;
 }
 
+json head_of(const Shards& shards, const Options& options)
+{
+    json head = result_head(options);
+    set_origin(head, shards);
+    return head;
+}
+
 Merged merged_bench(const Shards& shards, const Options& options)
 {
     BenchResult result;
@@ -87,7 +94,7 @@ Merged merged_bench(const Shards& shards, const Options& options)
         result.measurement.samples =
             std::max(result.measurement.samples, static_cast<unsigned>(row.samples_s.size() / runs));
     }
-    return {bench_report(result, options), exit_code(result.rows, true),
+    return {bench_report(result, options, head_of(shards, options)), exit_code(result.rows, true),
             error_of([&] { require_answers(result.rows, "measured"); })};
 }
 
@@ -96,14 +103,15 @@ Merged merged_check(const Shards& shards, const Options& options)
     const std::vector<RowRecord> rows = merged_rows(shards, selected_views(options));
     const auto scenes = scenes_of(shards, selected_views(options));
     const auto missing = sentences_of(shards, "missing_devices");
-    json section = result_head(options);
+    json section = head_of(shards, options);
     section["scenes"] = scenes;
     section["matrix"] = matrix_json(rows);
     section["rows"] = json::array();
     for (const RowRecord& row : rows)
         section["rows"].push_back(row_json(check_facts(row)));
     section["missing_devices"] = missing;
-    Report report{check_sheet({&rows, scenes, missing}), check_table(rows), {}};
+    Report report{
+        check_sheet({&rows, scenes, missing}), check_table(rows, RunOrigin(ResultValue(section, "the result"))), {}};
     const auto verdict = verdict_of(rows, options.allow_flawed, options.required);
     set_verdict(section, verdict);
     if (verdict) report.sheet.append(verdict->line());
@@ -160,7 +168,9 @@ Merged merged_reproduction(const Shards& shards, const Options& asked)
         run_searches(run, options, {&journal, &all.progress});
     }
     make_tables(all, options);
-    return {reproduction_report(all, options), rows_exit_code(all), error_of([&] { require_any_answer(all); })};
+    Report report = reproduction_report(all, options);
+    set_origin(report.json["tetrace"], shards);
+    return {std::move(report), rows_exit_code(all), error_of([&] { require_any_answer(all); })};
 }
 
 Merged merged_run(const Shards& shards, const Options& options)
@@ -179,9 +189,7 @@ int merge_command(const Options& asked)
     const Shards shards = read_shards(asked.files);
     const Options options = options_of(shards, asked);
     Merged merged = merged_run(shards, options);
-    json& section = merged.report.json["tetrace"];
-    set_origin(section, shards);
-    Sheet more = machines_sheet(section["merged"]);
+    Sheet more = machines_sheet(merged.report.json["tetrace"]["merged"]);
     merged.report.sheet.append(more);
     if (!merged.report.markdown.empty()) merged.report.markdown += more.markdown();
     deliver(options, merged.report);

@@ -32,14 +32,6 @@ std::vector<std::string>& command_line()
 
 } // namespace
 
-std::string command_of(const std::vector<std::string>& arguments)
-{
-    std::string text = "tetrace";
-    for (const std::string& argument : arguments)
-        text += " " + shell_word(argument);
-    return text;
-}
-
 void say_how_to_go_on(const Options& options)
 {
     std::vector<std::string> words = command_line();

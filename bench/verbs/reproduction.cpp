@@ -146,7 +146,7 @@ void make_tables(Reproduction& all, const Options& options)
 
 Report rival_report(const BenchResult& result, const std::vector<PaperTable>& tables, const Options& options)
 {
-    Steadiness steadiness{result.measurement.load, result.measurement.pulses};
+    Steadiness steadiness{result.measurement.load, result.measurement.pulses, result.conditions};
     for (const RowRecord& row : result.rows)
         steadiness.count(row);
     const PaperTables all = {tables,
@@ -155,7 +155,8 @@ Report rival_report(const BenchResult& result, const std::vector<PaperTable>& ta
                              result.missing_devices,
                              is_timed(result) ? trust_text(steadiness) : std::string(),
                              result.interrupted};
-    Report report{tables_sheet(all), tidy_table(tables, {}), bench_report(result, options).json, tables_markdown(all)};
+    Report report{tables_sheet(all), tidy_table(tables, {}), bench_report(result, options, result_head(options)).json,
+                  tables_markdown(all)};
     for (const PaperTable& table : tables)
         report.json["tetrace"]["tables"].push_back(table_json(table));
     if (options.out) report.sheet.labelled("Result", options.out->string());
@@ -174,7 +175,7 @@ Report reproduction_report(const Reproduction& all, const Options& options)
 
 void judge_steadiness(Reproduction& all, MachineWatch& watch)
 {
-    all.steadiness = {watch.load(), watch.pulses().found()};
+    all.steadiness = {watch.load(), watch.pulses().found(), host_conditions()};
     for (SceneRun& run : all.runs)
         watch.pulses().judge_rows(run.rows, all.steadiness.load);
     if (all.searches) watch.pulses().judge_rows(all.searches->rows, all.steadiness.load);

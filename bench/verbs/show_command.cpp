@@ -1,6 +1,7 @@
 #include "bench/debugging/defect_report.h"
 #include "bench/debugging/trace_sheet.h"
 #include "bench/output/report.h"
+#include "bench/output/trust.h"
 #include "bench/reproduce/tables/recorded_tables.h"
 #include "bench/results/result_file.h"
 #include "bench/show/show_report.h"

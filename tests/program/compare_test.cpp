@@ -139,6 +139,17 @@ TEST_F(Compare, reports_threads_compiler_flags_and_version)
         << ended.out;
 }
 
+TEST_F(Compare, reports_conditions_that_both_results_know)
+{
+    Json json = result();
+    json["tetrace"]["conditions"] = {{"governor", "performance"}, {"turbo", true}};
+    write("a.json", json);
+    json["tetrace"]["conditions"] = {{"governor", "powersave"}, {"turbo", true}, {"smt", true}};
+    write("b.json", json);
+    const Ended ended = run("compare a.json b.json");
+    EXPECT_TRUE(contains(unwrapped(ended), "Differ in the CPUs' frequency governor. ")) << ended.out;
+}
+
 TEST_F(Compare, says_so_where_samples_are_too_few_to_tell)
 {
     const Ended ended = compare_with([](Json& section) {

@@ -47,6 +47,28 @@ TEST_F(Program, report_writes_a_page_from_results)
     EXPECT_FALSE(file("report.html").empty()) << "the default name";
 }
 
+TEST_F(Program, report_writes_charts_and_efficiencies_as_files_and_lists_them)
+{
+    have_measured("a.json");
+    const Ended report = run("report a.json --charts figures --portability e.csv --out page.html");
+    EXPECT_EQ(report.code, 0) << report.errors;
+    std::size_t charts = 0;
+    for (const auto& chart : std::filesystem::directory_iterator(folder_ / "figures")) {
+        EXPECT_TRUE(contains(report.errors, "figures/" + chart.path().filename().string() + "\n")) << report.errors;
+        ++charts;
+    }
+    EXPECT_GT(charts, 0u);
+    EXPECT_TRUE(file("e.csv").starts_with("problem,platform,application,efficiency,noisy,mrays_per_s\n"));
+    EXPECT_TRUE(contains(report.errors, "e.csv: ")) << report.errors;
+    const Ended refused = run("report a.json --portability a.json");
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_TRUE(contains(refused.errors, "--portability: writing 'a.json' would replace the input")) << refused.errors;
+    const Ended no_folder = run("report a.json --charts a.json/figures");
+    EXPECT_EQ(no_folder.code, 2);
+    EXPECT_TRUE(contains(no_folder.errors, "--charts: cannot create the folder 'a.json/figures': "))
+        << no_folder.errors;
+}
+
 TEST_F(Program, report_of_a_folder_is_the_page_of_a_campaign)
 {
     std::filesystem::create_directories(folder_ / "results/host");

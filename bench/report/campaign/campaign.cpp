@@ -1,5 +1,6 @@
 #include "bench/report/campaign/campaign.h"
 
+#include "bench/output/trust.h"
 #include "bench/results/result_comparison.h"
 #include "bench/terminal/text.h"
 #include "core/base/error.h"
@@ -19,7 +20,7 @@ namespace {
 struct ReadRate {
     CampaignMachine machine;
     std::string group, title, hash; ///< group: unique for rays and kind of device
-    std::string work, label;
+    std::string work, label, application;
     CampaignRate rate;
 };
 
@@ -54,8 +55,9 @@ std::string title_of(const ResultFile& file, const ResultRow& row, const std::st
 }
 
 /// Nothing for a row without a rate, or whose work nobody can tell.
+/// application: see CampaignWork.
 void add_rate(ReadResult& read, const ResultFile& file, const ResultRow& row, const std::string& label,
-              const std::string& rays)
+              const std::string& application, const std::string& rays)
 {
     const std::string work = work_of(file, row);
     if (!row.device_kind || !row.mrays_per_s || row.samples_s.empty() || work.empty()) return;
@@ -71,9 +73,12 @@ void add_rate(ReadResult& read, const ResultFile& file, const ResultRow& row, co
     rate.group = fmt::format("{} {} {}", rays_of(file, row), rays, name_of(*row.device_kind));
     rate.work = fmt::format("{} {}", work, name_of(*row.device_kind));
     rate.label = label;
+    rate.application = application;
     rate.rate.mrays_per_s = *row.mrays_per_s;
     rate.rate.samples_s = row.samples_s;
     rate.rate.pulse = pulse_of(file.head, row);
+    rate.rate.noisy = row.noisy;
+    rate.rate.is_right = row.status == Status::ok;
     read.rates.push_back(std::move(rate));
 }
 
@@ -91,15 +96,20 @@ std::string search_label(const ResultRow& row)
 ReadResult read_one(const std::filesystem::path& path)
 {
     const ResultFile file = read_result(path);
-    ReadResult read{{path, file.head, day_of(file.head.date), {}, {}, {}}, {}};
+    ReadResult read{{path, file.head, day_of(file.head.date)}, {}};
+    const Steadiness steadiness = read_steadiness(file.section());
+    read.result.timed = steadiness.timed;
+    read.result.noisy = steadiness.noisy;
     for (const ResultRow* row : file.timed_rows())
         ++read.result.statuses[row->status];
     if (const auto load = file.section().find("load"))
         read.result.others = fmt::format("{:.2f}", load->at("others").number());
     for (const ReportRow& row : report_rows(file, 0))
-        if (row.rate) add_rate(read, file, *row.row, row.kernel() + "  " + row.api, std::string(name_of(row.rays)));
+        if (row.rate)
+            add_rate(read, file, *row.row, row.kernel() + "  " + row.api, row.row->backend + " " + row.layout,
+                     std::string(name_of(row.rays)));
     for (const ResultRow& row : file.searches)
-        add_rate(read, file, row, search_label(row), "searches");
+        add_rate(read, file, row, search_label(row), "", "searches");
     return read;
 }
 
@@ -134,7 +144,7 @@ private:
         if (new_group) campaign_.groups.push_back({rate.title, rate.hash, rate.machine.kind, {}});
         auto& works = campaign_.groups[group->second].works;
         const auto [work, new_work] = works_.try_emplace(rate.work, works.size());
-        if (new_work) works.push_back({rate.label, {}});
+        if (new_work) works.push_back({rate.label, rate.application, {}});
         return works[work->second];
     }
 

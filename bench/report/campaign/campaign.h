@@ -17,10 +17,11 @@ namespace tetrace {
 struct CampaignResult {
     std::filesystem::path path;
     ResultHead head;
-    std::optional<double> day;              ///< its date, in days since 1970-01-01 UTC; empty if it is none
-    std::map<Status, std::size_t> statuses; ///< rows and searches by status
-    std::string others;                     ///< processors that other work took while rows were timed
-    std::vector<std::size_t> machines;      ///< of its rates, each once
+    std::optional<double> day;                   ///< its date, in days since 1970-01-01 UTC; empty if it is none
+    std::map<Status, std::size_t> statuses = {}; ///< rows and searches by status
+    std::string others = {};                     ///< processors that other work took while rows were timed
+    std::size_t timed = 0, noisy = 0;            ///< rows and searches
+    std::vector<std::size_t> machines = {};      ///< of its rates, each once
 };
 
 /// A machine that others are compared with: the CPU of a host with a number of threads, its emulated devices, or a GPU.
@@ -35,12 +36,15 @@ struct CampaignRate {
     double mrays_per_s = 0;              ///< of searches, millions of those
     std::vector<double> samples_s;       ///< at least one
     RatePulse pulse = {};
+    bool noisy = false;    ///< not to be relied on, by its own samples or its machine
+    bool is_right = false; ///< whether every ray's hit is right
 };
 
 /// All rates of the same work: the same row with the same rays and the same answers
 /// (bench/results/result_comparison.h).
 struct CampaignWork {
     std::string label;               ///< "cdt maria tet80  vulkan"
+    std::string application;         ///< the API and the layout, "vulkan tet80"; empty of searches
     std::vector<CampaignRate> rates; ///< in the order of their results
 
     /// The newest of a machine; null if it has none.
@@ -79,6 +83,8 @@ struct Campaign {
 [[nodiscard]] Section index_section(const Campaign& campaign);    ///< machines and results; what was left out
 [[nodiscard]] Section machines_section(const Campaign& campaign); ///< machines compared, same work only
 [[nodiscard]] Section trend_section(const Campaign& campaign);    ///< each machine's rates over its dates
+/// Each application's efficiency on each platform, problem by problem; a problem of one platform is left out.
+[[nodiscard]] Section portability_section(const Campaign& campaign);
 
 /// The machines that have a rate in a group, ascending.
 [[nodiscard]] std::vector<std::size_t> machines_in(const CampaignGroup& group);

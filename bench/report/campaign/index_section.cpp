@@ -60,7 +60,7 @@ Html machine_table(const Campaign& campaign)
                    date_html(*results.front()), date_html(*results.back()),
                    has_trend(campaign, i) ? link(trend_anchor(campaign, i), "over dates") : Html()});
     }
-    return table.empty() ? paragraph("No row of these results has a rate.") : table.html();
+    return table.empty() ? Html() : heading("Machines") + table.html() + note(how_to_read_machines);
 }
 
 std::string statuses_text(const CampaignResult& result)
@@ -89,12 +89,15 @@ Html result_table(const Campaign& campaign)
                      {"host"},
                      {"system"},
                      {"rows"},
+                     {"noisy", "of timed", true},
                      {"others", "processors", true}});
     for (const CampaignResult& result : campaign.results)
         table.add({date_html(result), text(letters_of(campaign, result)),
                    text_element("code", "", (result.path.parent_path().filename() / result.path.filename()).string()),
                    text(result.head.verb), text_element("code", "", result.head.commit), text(result.head.machine),
-                   text(result.head.system), text(statuses_text(result)), text(result.others)});
+                   text(result.head.system), text(statuses_text(result)),
+                   text(result.timed > 0 ? fmt::format("{} of {}", result.noisy, result.timed) : ""),
+                   text(result.others)});
     return table.html();
 }
 
@@ -111,8 +114,7 @@ Html left_out_list(const Campaign& campaign)
 Section index_section(const Campaign& campaign)
 {
     return {"index", "Index",
-            heading("Machines") + machine_table(campaign) + note(how_to_read_machines) + heading("Results, by date") +
-                result_table(campaign) + left_out_list(campaign)};
+            machine_table(campaign) + heading("Results, by date") + result_table(campaign) + left_out_list(campaign)};
 }
 
 } // namespace tetrace

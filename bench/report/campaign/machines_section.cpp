@@ -18,7 +18,8 @@ const char* const how_to_read_comparison =
     "each: its ratio to the rate of the first machine of the table. A line is the same work on all its machines: "
     "the same kernel, scene, views and size, and the same hits, bit for bit. Work that only one machine has done is "
     "not shown. NOISY, as in 'tetrace compare': calibration during the row's samples took 1.25 times its fastest, "
-    "so the ratio may be the machine's; the means exclude such a row. Emulated devices are APIs of GPUs that run on "
+    "so the ratio may be the machine's; the means exclude such a row. noisy: by the row's own samples. Emulated "
+    "devices are APIs of GPUs that run on "
     "the CPU, and say nothing about a GPU.";
 
 std::size_t machines_with(const CampaignWork& work, const std::vector<std::size_t>& machines)
@@ -51,7 +52,8 @@ Html rate_cell(const CampaignRate* rate, const CampaignRate* first)
 {
     if (rate == nullptr) return {};
     Html value = text(short_number(rate->mrays_per_s));
-    if (rate->pulse.is_noisy()) value += text_element("small", "", "NOISY");
+    if (rate->pulse.is_noisy() || rate->noisy)
+        value += text_element("small", "", rate->pulse.is_noisy() ? "NOISY" : "noisy");
     if (first == nullptr || first == rate) return value;
     return value + text_element("small", "", fmt::format("× {:.2f}", rate->mrays_per_s / first->mrays_per_s));
 }
@@ -60,20 +62,28 @@ Html rate_cell(const CampaignRate* rate, const CampaignRate* first)
 struct Mean {
     double ratio = 1;
     std::size_t works = 0;
+    std::size_t noisy = 0; ///< those of which a rate is not to be relied on
+
+    [[nodiscard]] std::string note() const
+    {
+        return counted(works, "work", "works") + (noisy > 0 ? fmt::format(", {} noisy", noisy) : "");
+    }
 };
 
 std::optional<Mean> mean_over(const std::vector<const CampaignWork*>& works, std::size_t first, std::size_t machine)
 {
     double sum = 0;
-    std::size_t count = 0;
+    Mean mean;
     for (const CampaignWork* work : works) {
         const CampaignRate *a = work->newest_of(first), *b = work->newest_of(machine);
         if (a == nullptr || b == nullptr || a->pulse.is_noisy() || b->pulse.is_noisy()) continue;
         sum += std::log(b->mrays_per_s / a->mrays_per_s);
-        ++count;
+        ++mean.works;
+        mean.noisy += a->noisy || b->noisy;
     }
-    if (count == 0) return std::nullopt;
-    return Mean{std::exp(sum / static_cast<double>(count)), count};
+    if (mean.works == 0) return std::nullopt;
+    mean.ratio = std::exp(sum / static_cast<double>(mean.works));
+    return mean;
 }
 
 std::string column_title(const Campaign& campaign, std::size_t machine)
@@ -115,7 +125,7 @@ Html mean_chart(const Campaign& campaign, const CampaignGroup& group, const std:
                                   {},
                                   {},
                                   {},
-                                  counted(mean->works, "work", "works")});
+                                  mean->note()});
     return chart.bars.size() < 2 ? Html() : figure("", draw(chart), "");
 }
 
@@ -149,12 +159,8 @@ Section machines_section(const Campaign& campaign)
     Section section{"compared-machines", "Machines compared", {}};
     for (const CampaignGroup& group : campaign.groups)
         section.content += group_html(campaign, group);
-    if (section.content.empty())
-        section.content =
-            paragraph("No two machines of these results did the same work. Measure the same scenes, views and size "
-                      "on each.");
-    else
-        section.content = note(how_to_read_comparison) + section.content;
+    if (section.content.empty()) return section;
+    section.content = note(how_to_read_comparison) + section.content;
     return section;
 }
 

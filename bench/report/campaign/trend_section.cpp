@@ -155,10 +155,7 @@ Section trend_section(const Campaign& campaign)
     Section section{"trends", "Over dates", {}};
     for (std::size_t machine = 0; machine < campaign.machines.size(); ++machine)
         section.content += machine_trends(campaign, machine);
-    if (section.content.empty())
-        section.content = paragraph("No machine of these results did the same work on two dates.");
-    else
-        section.content = note(how_to_read_trends) + section.content;
+    if (!section.content.empty()) section.content = note(how_to_read_trends) + section.content;
     return section;
 }
 

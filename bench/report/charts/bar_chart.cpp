@@ -159,13 +159,14 @@ std::string interval_text(const Interval& interval)
 Html interval_mark(const Interval& interval, const Axis& axis, const RowFrame& frame, double middle)
 {
     const auto place = [&](double value) { return axis.place(value, frame.left, frame.right); };
-    const bool undecided = interval.low <= 1 && 1 <= interval.high;
-    return svg_mark(series_class(interval.series), interval.id,
-                    fmt::format("{}: {}", full_label(interval), interval_text(interval)),
-                    row_label(interval, frame, middle) +
-                        svg_line(place(interval.low), middle, place(interval.high), middle, "interval") +
-                        svg_shape(place(interval.value), middle, 0, undecided ? "hollow" : "solid") +
-                        svg_text(chart_width, middle + 4.5, "value end", interval_text(interval)));
+    const bool undecided = interval.noisy || (interval.low <= 1 && 1 <= interval.high);
+    return svg_mark(
+        series_class(interval.series), interval.id,
+        fmt::format("{}: {}", full_label(interval), interval_text(interval)),
+        row_label(interval, frame, middle) +
+            svg_line(place(interval.low), middle, place(interval.high), middle, "interval") +
+            svg_shape(place(interval.value), middle, 0, undecided ? "hollow" : "solid") +
+            svg_text(chart_width, middle + 4.5, interval.noisy ? "small end" : "value end", interval_text(interval)));
 }
 
 } // namespace

@@ -34,6 +34,7 @@ struct Interval {
     std::string id, label, sublabel;
     std::size_t series = 0;
     double value = 0, low = 0, high = 0; ///< positive, finite
+    bool noisy = false;                  ///< not to be relied on, whatever the interval
 };
 
 struct IntervalChart {
@@ -42,8 +43,9 @@ struct IntervalChart {
     std::vector<Interval> intervals;
 };
 
-/// Dots with intervals on a logarithmic axis (a linear one where all are close together), with a line at 1. A dot whose
-/// interval contains 1, and so shows no difference, is hollow. Precondition: there is at least one interval.
+/// Dots with intervals on a logarithmic axis (a linear one where all are close together), with a line at 1. A dot
+/// that shows no difference, since its interval contains 1 or it is noisy, is hollow. Precondition: there is at least
+/// one interval.
 [[nodiscard]] Html draw(const IntervalChart& chart);
 
 } // namespace tetrace

@@ -50,6 +50,15 @@ double bottom_of(std::size_t labels)
     return std::max(min_bottom, top + above_labels + column + below_labels);
 }
 
+Axis x_axis_of(const LineChart& chart, const Range& x)
+{
+    constexpr int max_intervals = 4;
+    if (chart.x_dates) return Axis::dates(x.low, x.high);
+    if (chart.x_whole)
+        return Axis::linear(x.low, x.high, std::clamp(static_cast<int>(x.high - x.low), 1, max_intervals));
+    return x.axis(max_intervals, chart.x_logarithmic);
+}
+
 LineFrame frame_of(const LineChart& chart)
 {
     Range x, y;
@@ -61,8 +70,8 @@ LineFrame frame_of(const LineChart& chart)
         }
         names = std::max(names, side_key_width + text_width(series.name, label_size));
     }
-    return {chart.x_dates ? Axis::dates(x.low, x.high) : x.axis(4, chart.x_logarithmic), y.axis(5, chart.y_logarithmic),
-            side_labels_left(names), bottom_of(chart.series.size())};
+    return {x_axis_of(chart, x), y.axis(5, chart.y_logarithmic), side_labels_left(names),
+            bottom_of(chart.series.size())};
 }
 
 Html grid(const LineChart& chart, const LineFrame& frame)

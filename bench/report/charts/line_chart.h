@@ -18,6 +18,7 @@ struct LineChart {
     std::vector<Series> series;
     bool x_logarithmic = false, y_logarithmic = false;
     bool x_dates = false; ///< x are days since 1970-01-01 UTC
+    bool x_whole = false; ///< x are counts, and their axis starts at the lowest
 };
 
 /// A series whose x ascend is drawn as a line, any other as a cloud of its shape; its name, with its shape before it,

@@ -73,6 +73,11 @@ constexpr std::array badge_looks = {
     BadgeLook{"flawed", "fair", "!"},
     BadgeLook{"wrong", "bad", "✗"},
     BadgeLook{"error", "bad", "✗"},
+    BadgeLook{"FASTER", "good", "✓"},
+    BadgeLook{"SLOWER", "bad", "✗"},
+    BadgeLook{"NOISY", "fair", "!"},
+    BadgeLook{"FAILED", "bad", "✗"},
+    BadgeLook{"MISSING", "bad", "✗"},
 };
 
 constexpr std::ptrdiff_t narrow_columns = 4; // that fit the screen of a phone
@@ -220,6 +225,8 @@ a { color: var(--link); }
 code { font: 0.9em ui-monospace, "SF Mono", Menlo, Consolas, "DejaVu Sans Mono", monospace; overflow-wrap: anywhere; }
 .note, figcaption { color: var(--muted); font-size: 0.85rem; }
 figcaption { margin-top: 0.35rem; }
+.trust, .verdict { max-width: 60rem; }
+.trust.fair { padding: 0.4rem 0.7rem; border-radius: 0.3rem; }
 ul { padding-left: 1.2rem; }
 ul.missing { font-size: 0.85rem; max-width: 60rem; }
 ul.plain, ul.summary { margin: 0; padding: 0; list-style: none; }

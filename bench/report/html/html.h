@@ -88,8 +88,7 @@ private:
 /// A part of the page: anchor, heading, content.
 struct Section {
     std::string id, title;
-    Html content;
-    bool is_empty = false; ///< its content only says that there are none
+    Html content; ///< empty: the page leaves the section out
 };
 
 [[nodiscard]] Html paragraph(std::string_view plain);
