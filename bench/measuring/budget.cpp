@@ -16,6 +16,7 @@ namespace {
 
 constexpr double slack = 0.25;    // of the budget, see the class
 constexpr double telling_s = 0.1; // launch overhead is a small part of a probe that takes this long
+constexpr double estimating = 0.03; // of the budget: probes of all rows that take this long together tell enough
 constexpr double patience = 0.02; // of what is left of the budget: a probe that takes this long is not repeated
 constexpr unsigned coarsest_step = 16;
 
@@ -57,8 +58,9 @@ TraceJob prepare_probe(RowRun& row, std::size_t view, unsigned step)
 }
 
 /// Estimates the seconds of a view by tracing more and more of its rays, until there are enough for an estimate. The
-/// first launch, in which devices may compile, does not count; its time goes into the row's first pass.
-double estimated_view_s(RowRun& row, const Clock& clock, double left_s)
+/// first launch, in which devices may compile, does not count; its time goes into the row's first pass. enough_s: what a
+/// probe takes at most, if it can be made so short.
+double estimated_view_s(RowRun& row, const Clock& clock, double left_s, double enough_s)
 {
     const std::size_t view = first_view_with_rays(row);
     if (view == row.scene->views().size()) return 0;
@@ -74,9 +76,9 @@ double estimated_view_s(RowRun& row, const Clock& clock, double left_s)
     for (;; step /= 2) {
         // The quickest of three where the first is slow: on a busy machine a thread may wait longer than it works.
         auto [seconds, rays] = launch();
-        for (int again = 0; again < 2 && seconds >= telling_s && seconds < patience_s; ++again)
+        for (int again = 0; again < 2 && seconds >= enough_s && seconds < patience_s; ++again)
             seconds = std::min(seconds, launch().first);
-        if (seconds >= telling_s || step == 1) return seconds / rays * static_cast<double>(ray_count(row, view));
+        if (seconds >= enough_s || step == 1) return seconds / rays * static_cast<double>(ray_count(row, view));
     }
 }
 
@@ -113,13 +115,20 @@ void Budget::plan(std::vector<RowRun>& rows, const Entry& samples, std::size_t f
 {
     start_s_ = now();
     if (std::isinf(seconds_)) return;
+    const double enough_s = std::min(telling_s, estimating * seconds_ / static_cast<double>(rows.size()));
     for (std::size_t i = 0; i < rows.size(); ++i) {
         RowRun& row = rows[i];
         progress_line().show("estimating", static_cast<double>(i) / static_cast<double>(rows.size()), -1,
                              row_label(row.key));
         Entry entry = samples;
         entry.row = &row;
-        if (is_alive(row)) guarded(row, [&] { entry.view_s = estimated_view_s(row, clock_, left_s()); });
+        if (is_alive(row) && !entries_.empty() && left_s() <= 0) {
+            row.outcome = Skipped{Status::skipped, fmt::format("--budget of {} was spent before this row was estimated; "
+                                                               "with more it is measured",
+                                                               seconds_text(seconds_))};
+            row.session.reset();
+        }
+        if (is_alive(row)) guarded(row, [&] { entry.view_s = estimated_view_s(row, clock_, left_s(), enough_s); });
         if (!is_alive(row)) continue;
         entry.views = static_cast<double>(row.scene->views().size() - first_view);
         entry.views_left =
@@ -134,15 +143,10 @@ void Budget::plan(std::vector<RowRun>& rows, const Entry& samples, std::size_t f
         entry.is_reference = std::ranges::any_of(
             entries_, [&](const Entry& other) { return reference_of(other.row->key) == entry.row->key; });
     fit(left_s());
-    if (needed_s() > max_budgets * seconds_)
-        throw Error(ErrorKind::usage,
-                    fmt::format("--budget: even one row would take about {}, and {} of {} is left; use "
-                                "--budget {}, other rows, fewer --views or a smaller --size",
-                                seconds_text(needed_s()), seconds_text(std::max(0.0, left_s())), seconds_text(seconds_),
-                                budget_text(1.25 * (now() - start_s_ + needed_s()))));
     if (alive() == 1 && needed_s() > left_s())
-        say(fmt::format("--budget: even one row takes about {}, but {} is left; it is measured anyway",
-                        seconds_text(needed_s()), seconds_text(std::max(0.0, left_s()))));
+        say(fmt::format("--budget: even one row would take about {}, and {} of {} is left; it is measured anyway. Other "
+                        "rows, fewer --views or a smaller --size take less",
+                        seconds_text(needed_s()), seconds_text(std::max(0.0, left_s())), seconds_text(seconds_)));
 }
 
 /// A sample of several passes has one more, which is launched by itself, and up to one more than it needs.

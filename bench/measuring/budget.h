@@ -23,12 +23,9 @@ inline constexpr std::uint32_t max_passes = 4096;
 ///
 /// Estimates are corrected as rows are traced. plan() holds the rows to the budget itself. Later reviews allow a
 /// quarter more, so that noise skips no row. A run takes at most 1.25 budgets plus the pass that is running at that
-/// moment; if the last row with the judging of its scene takes longer, as long as these.
+/// moment; if the last row with the judging of its scene takes longer, as long as these: one row is always measured.
 class Budget {
 public:
-    /// A run is refused if even one row would take longer than this many budgets.
-    static constexpr double max_budgets = 4;
-
     /// Starts the clock. seconds: infinity means no limit; then all functions below do nothing.
     explicit Budget(double seconds = std::numeric_limits<double>::infinity(), Clock clock = host_clock());
 
@@ -39,7 +36,7 @@ public:
     /// Restarts the clock, estimates the rows by tracing a part of their rays, and skips those that do not fit. Rows
     /// that cannot be traced end with their reason. rows: opened; they keep their addresses while the budget is used.
     /// samples: the number asked for, in each of so many runs; 0: rows are only verified. sample_s: that each lasts at
-    /// least. Throws Error{usage} where the last row would take more than max_budgets budgets.
+    /// least. Says so if the last row does not fit.
     void plan(std::vector<RowRun>& rows, unsigned samples, double sample_s = 0, unsigned runs = 1);
     /// The same for rows that are verified and timed view by view, in samples of a view, from the view `first` on.
     void plan_views(std::vector<RowRun>& rows, unsigned samples, double sample_s, std::size_t first);

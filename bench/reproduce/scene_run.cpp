@@ -89,7 +89,7 @@ void load_scene_of(SceneRun& run, const Options& options)
 {
     run.scene = std::make_unique<SceneWork>(load_work(run.build.request, options, run.build.label));
     run.likeness = likeness_of(run.build.scene, run.scene->loaded().scene, run.scene->counts());
-    run.sampling = sampling_of(*run.scene, view_count(options.camera_set));
+    run.sampling = sampling_of(*run.scene, camera_set_size(options));
     if (run.build.robustness) run.flat = std::make_unique<FlatTets>(*run.scene);
 }
 

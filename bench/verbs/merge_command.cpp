@@ -87,8 +87,11 @@ Merged merged_bench(const Shards& shards, const Options& options)
         result.measurement.samples =
             std::max(result.measurement.samples, static_cast<unsigned>(row.samples_s.size() / runs));
     }
-    return {bench_report(result, options), exit_code(result.rows, true),
-            error_of([&] { require_answers(result.rows, "measured"); })};
+    write_junit(result.rows, options);
+    return {bench_report(result, options), exit_code(result.rows, true), error_of([&] {
+                require_judged(result.rows, options.required);
+                require_answers(result.rows, "measured");
+            })};
 }
 
 Merged merged_check(const Shards& shards, const Options& options)
@@ -167,6 +170,7 @@ Merged merged_run(const Shards& shards, const Options& options)
 {
     if (options.verb == Verb::bench) return merged_bench(shards, options);
     if (options.verb == Verb::check) return merged_check(shards, options);
+    if (options.junit) throw Error(ErrorKind::usage, "--junit: these shards are of 'reproduce', which has no JUnit");
     return merged_reproduction(shards, options);
 }
 
