@@ -334,10 +334,11 @@ LoadedScene load_mesh_scene(const SceneRequest& request, const fs::path& mesh, c
     for (const CatalogueEntry& entry : catalogue())
         names.push_back(entry.name);
     const bool is_path = name.find('/') != std::string::npos || fs::path(name).has_extension();
-    throw Error(is_path ? ErrorKind::missing : ErrorKind::usage,
-                fmt::format("scene {}: neither a name of the catalogue nor a file{}; give one of its names ({}), or the "
-                            "path of a mesh (.ply, .obj, .off, .stl, .glb, .gltf) or of a .tet file",
-                            name, did_you_mean(name, names), fmt::join(names, ", ")));
+    throw Error(
+        is_path ? ErrorKind::missing : ErrorKind::usage,
+        fmt::format("scene {}: neither a name of the catalogue ({}) nor a file; give one of these names, or the "
+                    "path of a mesh (.ply, .obj, .off, .stl, .glb, .gltf) or of a .tet file{}",
+                    name, fmt::join(names, ", "), did_you_mean(name, names)));
 }
 
 } // namespace

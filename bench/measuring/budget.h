@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,9 @@ namespace tetrace {
 
 /// Passes of a sample: a launch of Vulkan's lists them all.
 inline constexpr std::uint32_t max_passes = 4096;
+
+/// What the reasons of rows that Budget skips have in common: the --budget that runs all of them follows.
+inline constexpr const char* with_budget = "; with --budget ";
 
 /// Keeps a run within the seconds of --budget. A row needs a pass over its views to be verified, its first view once
 /// more, a warm-up pass, and min_samples samples with their passes of single launches (latency_passes()). Where the
@@ -64,6 +68,7 @@ private:
         double views = 0, samples = 0, sample_s = 0, runs = 1;
         double views_per_sample = 0;
         double seen_s = 0, seen_views = 0;
+        std::optional<double> skipped_s = {}; ///< what it needed when it was skipped
 
         [[nodiscard]] double need_s() const;
     };
@@ -74,9 +79,9 @@ private:
     [[nodiscard]] double needed_s(bool by_references_only = false) const;
     [[nodiscard]] std::size_t alive() const;
     [[nodiscard]] Entry* slowest(bool among_references);
-    void skip(Entry& entry, double affordable_s);
-    bool skip_last_scene(double affordable_s);
-    bool skip_slowest_reference(double affordable_s);
+    void skip(Entry& entry);
+    bool skip_last_scene();
+    bool skip_slowest_reference();
     bool skip_slowest(double affordable_s, bool among_references);
     void fit(double affordable_s);
     [[nodiscard]] std::string sufficient() const;

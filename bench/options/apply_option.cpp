@@ -78,8 +78,9 @@ ApplyOption set_path(const std::string& option, std::optional<std::filesystem::p
 
 ApplyOption append_path(const std::string& option, std::vector<std::filesystem::path> Options::*list)
 {
-    return {
-        [=](Options& options, const std::string& text) { (options.*list).push_back(named_file(option, text)); }, {}, true};
+    return {[=](Options& options, const std::string& text) { (options.*list).push_back(named_file(option, text)); },
+            {},
+            true};
 }
 
 ApplyOption append_scenes()
@@ -116,7 +117,8 @@ ApplyOption set_out()
                     options.verb != Verb::render && options.verb != Verb::report && options.verb != Verb::dump;
                 if (is_result && text == "-") options.out.reset();
             },
-            {}, true};
+            {},
+            true};
 }
 
 } // namespace tetrace

@@ -14,10 +14,9 @@ template <class T>
 [[nodiscard]] ApplyOption append(std::string option, std::vector<T> Options::*list,
                                  std::vector<T> accepted = values_of<T>())
 {
-    return {[=](Options& options, const std::string& text) {
-                (options.*list).push_back(choose(option, text, accepted));
-            },
-            all_names(accepted)};
+    return {
+        [=](Options& options, const std::string& text) { (options.*list).push_back(choose(option, text, accepted)); },
+        all_names(accepted)};
 }
 
 /// The value with that name.

@@ -98,12 +98,12 @@ std::string bash_completion()
         else if (file_arguments(verb.verb).max > 0)
             words += fmt::format("    {}) files='*.json' ;;\n", name_of(verb.verb));
     }
-    const std::string values = option_cases([](const OptionRow& row) { return !row.value.empty(); },
-                                            [](const OptionRow& row) {
-                                                return fmt::format("words='{}' files={}",
-                                                                   fmt::join(row.apply.names(), " "),
-                                                                   row.apply.takes_files() ? "'*'" : "");
-                                            });
+    const std::string values =
+        option_cases([](const OptionRow& row) { return !row.value.empty(); },
+                     [](const OptionRow& row) {
+                         return fmt::format("words='{}' files={}", fmt::join(row.apply.names(), " "),
+                                            row.apply.takes_files() ? "'*'" : "");
+                     });
     // Bash makes words of "--option=value" at the "=". Of a list, the part after its last comma is completed.
     return fmt::format(R"(# Completes command lines of tetrace in bash.
 _tetrace()
@@ -150,7 +150,8 @@ std::string zsh_value(const OptionRow& row)
     const std::string names = fmt::format("{}", fmt::join(row.apply.names(), " "));
     const std::string title = described(row.value);
     if (names.empty()) return fmt::format(":{}:{}", title, row.apply.takes_files() ? "_files" : "");
-    const std::string one = row.list ? fmt::format("_sequence compadd - {}", names) : fmt::format("compadd - {}", names);
+    const std::string one =
+        row.list ? fmt::format("_sequence compadd - {}", names) : fmt::format("compadd - {}", names);
     if (!row.apply.takes_files()) return fmt::format(":{}:{{{}}}", title, one);
     return fmt::format(":{}:{{{}; _files}}", title, one);
 }
@@ -167,14 +168,14 @@ std::string zsh_completion()
         for (const OptionRow* row : rows_of_options(verb.verb)) {
             const std::string value = row->value.empty() ? "" : zsh_value(*row);
             cases += " \\\n            " +
-                     in_quotes(fmt::format("{}{}{}[{}]{}", row->list ? "*" : "", row->name, row->value.empty() ? "" : "=",
-                                           described(first_sentence(row->help)), value));
+                     in_quotes(fmt::format("{}{}{}[{}]{}", row->list ? "*" : "", row->name,
+                                           row->value.empty() ? "" : "=", described(first_sentence(row->help)), value));
         }
         const std::string words = words_after(verb.verb);
         cases += fmt::format(" \\\n            '--help=-[describe the verb]::all:(all)' {}\n        ;;\n",
-                             !words.empty()                         ? fmt::format("'*:word:({})'", words)
+                             !words.empty()                      ? fmt::format("'*:word:({})'", words)
                              : file_arguments(verb.verb).max > 0 ? "'*:result:_files -g \"*.json(-.)\"'"
-                                                                    : "");
+                                                                 : "");
     }
     return fmt::format("#compdef tetrace\n# Completes command lines of tetrace in zsh.\n"
                        "_tetrace()\n{{\n"
@@ -193,7 +194,8 @@ std::string fish_completion()
     std::string text = "# Completes command lines of tetrace in fish.\ncomplete -c tetrace -f\n";
     for (const VerbHelp& verb : verb_helps()) {
         const std::string_view name = name_of(verb.verb);
-        text += fmt::format("complete -c tetrace -n __fish_use_subcommand -a {} -d {}\n", name, in_quotes(verb.summary));
+        text +=
+            fmt::format("complete -c tetrace -n __fish_use_subcommand -a {} -d {}\n", name, in_quotes(verb.summary));
         const std::string given = fmt::format("complete -c tetrace -n '__fish_seen_subcommand_from {}'", name);
         for (const OptionRow* row : rows_of_options(verb.verb)) {
             text += fmt::format("{} -l {} -d {}", given, row->name.substr(2), in_quotes(first_sentence(row->help)));

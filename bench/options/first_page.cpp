@@ -12,11 +12,12 @@ namespace {
 
 constexpr std::size_t text_column = 24; ///< in which the lines of options begin
 
-/// A head in a text_column of its own, and text to its right.
+/// A head, and text to its right.
 std::string beside(const std::string& head, const std::string& text, std::size_t width)
 {
     const std::string lines = wrapped(text, width, text_column);
-    return head.size() + 1 < text_column ? fmt::format("{:<{}}", head, text_column) + lines.substr(text_column) : head + "\n" + lines;
+    return head.size() < text_column ? fmt::format("{:<{}}", head, text_column) + lines.substr(text_column)
+                                     : head + "\n" + lines;
 }
 
 bool is_usual(const OptionRow& row, Verb verb)
@@ -29,16 +30,17 @@ std::string usual_options(Verb verb, std::size_t width)
     std::string text;
     for (const OptionRow& row : option_table())
         if (is_usual(row, verb))
-            text += beside(fmt::format("  {} {}", row.name, row.value),
-                          fmt::format(fmt::runtime(row.usual.line), join_alternatives(row.apply.names())), width);
+            text += beside(fmt::format("  {} {}", row.name, is_option(row) ? row.value : ""),
+                           fmt::format(fmt::runtime(row.usual.line), join_alternatives(row.apply.names())), width);
     return text;
 }
 
-/// The first line, without what explains it to its right.
-std::string_view example_of(std::string_view lines)
+/// The first line that is of the verb, without what explains it to its right.
+std::string_view example_of(const VerbHelp& help)
 {
-    const std::string_view first = lines.substr(2, lines.find('\n') - 2);
-    return first.substr(0, first.find("  "));
+    std::string_view lines = help.examples;
+    lines.remove_prefix(lines.find(fmt::format("tetrace {}", name_of(help.verb))));
+    return lines.substr(0, std::min(lines.find('\n'), lines.find("  ")));
 }
 
 std::string exit_code_line()
@@ -54,7 +56,10 @@ std::string exit_code_line()
 std::string usage_of(Verb verb)
 {
     const FileArguments files = file_arguments(verb);
-    return fmt::format("Usage: tetrace {} {}{}{}", name_of(verb), files.names, files.max > 0 ? " " : "",
+    std::string words(files.names);
+    for (const OptionRow& row : option_table())
+        if (!is_option(row) && takes(verb, row)) words = fmt::format("[{}...]", row.name);
+    return fmt::format("Usage: tetrace {} {}{}{}", name_of(verb), words, words.empty() ? "" : " ",
                        verb == Verb::help ? "[VERB [all] | options | man | bash | zsh | fish]" : "[OPTION]...");
 }
 
@@ -65,7 +70,7 @@ std::string first_page(const VerbHelp& help, std::size_t width)
     const std::string options = usual_options(help.verb, width);
     return fmt::format("{}\n\n{}\n{}{}{}{}{}", usage_of(help.verb),
                        wrapped(std::string(description.substr(0, sentence)) + ".", width, 0), options,
-                       options.empty() ? "" : "\n", beside("Example", std::string(example_of(help.examples)), width),
+                       options.empty() ? "" : "\n", beside("Example", std::string(example_of(help)), width),
                        beside("Exit codes", exit_code_line(), width),
                        beside("All options", fmt::format("tetrace help {} all", name_of(help.verb)), width));
 }

@@ -249,7 +249,8 @@ const VerbHelp verb_help[] = {
      "  srun -n 4 tetrace reproduce table4 --scene bunny --out all.json   shards and merges by itself\n"},
     {Verb::help, "describe the program or a verb",
      "Describes the program, or a verb: its usual options, and with 'all', or '--help=all', everything. 'tetrace help "
-     "options' prints a Markdown table of all options, 'tetrace help man' a manual page for man, and 'tetrace help bash', "
+     "options' prints a Markdown table of all options, 'tetrace help man' a manual page for man, and 'tetrace help "
+     "bash', "
      "'zsh' or 'fish' a completion script for that shell.",
      "  tetrace help bench\n"
      "  tetrace help bench all\n"

@@ -17,6 +17,10 @@ inline constexpr const char* experiments = "Experiments";
 
 /// Of Usual: all that take the option.
 inline constexpr unsigned every_verb = ~0u;
+[[nodiscard]] constexpr Usual usual_for(unsigned verbs, const char* line)
+{
+    return {verbs, line};
+}
 
 inline constexpr unsigned measuring = bit(Verb::bench) | bit(Verb::check);
 inline constexpr unsigned sharing = measuring | bit(Verb::reproduce);

@@ -13,8 +13,8 @@ namespace tetrace {
 /// What an option does with a value, and the values that it accepts.
 class ApplyOption {
 public:
-    /// take: takes one value; throws Error{usage} if it is not accepted. names: what it accepts by name, in the order of
-    /// help; empty for numbers and any text. takes_files: whether a file's name is accepted, perhaps besides these.
+    /// take: takes one value; throws Error{usage} if it is not accepted. names: what it accepts by name, in the order
+    /// of help; empty for numbers and any text. takes_files: whether a file's name is accepted, perhaps besides these.
     template <std::invocable<Options&, const std::string&> Take>
     ApplyOption(Take take, std::vector<std::string> names = {}, bool takes_files = false)
         : take_(std::move(take)), names_(std::move(names)), takes_files_(takes_files)

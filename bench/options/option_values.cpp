@@ -65,6 +65,7 @@ std::vector<std::string> split_list(const std::string& option, const std::string
         else
             parts.back() += c;
     }
+    if (text.empty()) throw Error(ErrorKind::usage, option + ": the value is empty");
     for (const std::string& part : parts)
         if (part.empty())
             throw Error(ErrorKind::usage,
@@ -97,8 +98,10 @@ void reject_value(const std::string& option, const std::string& value, const std
 void reject_name(const std::string& option, const std::string& value, const std::vector<std::string>& names,
                  const std::string& more)
 {
-    throw Error(ErrorKind::usage, fmt::format("{}: '{}' is not accepted{}; accepted: {}{}", option, value,
-                                              did_you_mean(value, names), join_alternatives(names), more));
+    const std::string guess = did_you_mean(value, names);
+    throw Error(ErrorKind::usage,
+                fmt::format("{}: '{}' is not accepted{}: {}{}", option, value,
+                            guess.empty() ? "; accepted" : guess + " Accepted", join_alternatives(names), more));
 }
 
 std::uint64_t parse_count(const std::string& option, const std::string& text, std::uint64_t low, std::uint64_t high)
@@ -245,25 +248,26 @@ std::string text_of(const Shard& shard)
 Shard parse_shard(const std::string& text)
 {
     const std::size_t slash = text.find('/');
-    if (slash == std::string::npos) reject_value("--shard", text, "K/N, the K-th of N shards: 1/4 to 4/4");
     Shard shard;
-    shard.of = static_cast<unsigned>(parse_count("--shard", text.substr(slash + 1), 1, max_shards));
-    shard.number = static_cast<unsigned>(parse_count("--shard", text.substr(0, slash), 1, shard.of));
+    const bool read = slash != std::string::npos && read_whole(std::string_view(text).substr(0, slash), shard.number) &&
+                      read_whole(std::string_view(text).substr(slash + 1), shard.of);
+    if (!read || shard.number < 1 || shard.number > shard.of || shard.of > max_shards)
+        reject_value("--shard", text,
+                     fmt::format("K/N, the K-th of N shards, 1/4 to 4/4 for example; N is at most {}", max_shards));
     return shard;
 }
 
-std::vector<std::uint32_t> parse_views(const std::string& text, std::size_t view_count)
+std::vector<std::uint32_t> parse_views(const std::string& text, std::size_t view_count, const std::string& option)
 {
     std::set<std::uint32_t> numbers;
     const std::string all = fmt::format("0-{}", view_count - 1);
-    for (const std::string& part : split_list("--views", text.empty() ? all : text)) {
+    for (const std::string& part : split_list(option, text.empty() ? all : text)) {
         ViewRange range;
         if (!read_range(part, range))
-            reject_value("--views", part, "numbers (3), ranges (10-20) and strides (0-1281:64), commas between");
+            reject_value(option, part, "numbers (3), ranges (10-20) and strides (0-1281:64), commas between");
         if (range.last >= view_count)
-            throw Error(ErrorKind::usage, fmt::format("--views: view {} does not exist; this camera set has views 0 "
-                                                      "to {}",
-                                                      range.last, view_count - 1));
+            throw Error(ErrorKind::usage, fmt::format("{}: view {} does not exist; this camera set has views 0 to {}",
+                                                      option, range.last, view_count - 1));
         for (std::uint64_t number = range.first; number <= range.last; number += range.stride)
             numbers.insert(static_cast<std::uint32_t>(number));
     }

@@ -89,6 +89,7 @@ template <class T>
 
 /// View numbers: numbers separated by commas, ranges "10-20" and strides "0-1281:64"; empty is all. Ascending, each
 /// once. Throws Error{usage} naming the part that cannot be read, or the number that is not below view_count.
-[[nodiscard]] std::vector<std::uint32_t> parse_views(const std::string& text, std::size_t view_count);
+[[nodiscard]] std::vector<std::uint32_t> parse_views(const std::string& text, std::size_t view_count,
+                                                     const std::string& option = "--views");
 
 } // namespace tetrace

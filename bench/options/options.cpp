@@ -114,7 +114,8 @@ void check_single(const Options& options, const char* name, std::size_t count)
 /// `trace` follows one ray.
 void check_ray(const Options& options)
 {
-    if (options.scenes.size() != 1)
+    if (options.scenes.empty()) throw Error(ErrorKind::usage, "trace: --scene SCENE is missing: which scene?");
+    if (options.scenes.size() > 1)
         throw Error(ErrorKind::usage,
                     fmt::format("trace: --scene accepts one scene; {} are given", options.scenes.size()));
     if (!options.pixel) throw Error(ErrorKind::usage, "trace: --pixel X,Y is missing: which ray?");
@@ -220,7 +221,9 @@ Options help_of(const std::string& topic, bool whole = false)
 
 Options parse_verb(Verb verb, const std::vector<std::string>& arguments)
 {
-    if (std::ranges::find(arguments, "--help=all") != arguments.end()) return help_of(std::string(name_of(verb)), true);
+    const auto has = [&](const char* word) { return std::ranges::find(arguments, word) != arguments.end(); };
+    if (has("--help=all")) return help_of(std::string(name_of(verb)), true);
+    if (has("--version") || has("-V")) return {.verb = Verb::version};
     Options options = defaults_of(verb);
     CLI::App app;
     app.set_help_flag("--help,-h");
@@ -236,6 +239,8 @@ Options parse_verb(Verb verb, const std::vector<std::string>& arguments)
         return help_of(std::string(name_of(verb)));
     } catch (const CLI::ExtrasError&) {
         reject_command_line(verb, not_accepted(verb, arguments, app.remaining()));
+    } catch (const CLI::ArgumentMismatch& problem) {
+        reject_command_line(verb, without_value(problem.what()));
     } catch (const CLI::ParseError& problem) {
         reject_command_line(verb, problem.what());
     }
@@ -314,9 +319,7 @@ Options parse_options(const std::vector<std::string>& arguments)
                 std::ranges::replace(rest, std::string("-o"), std::string("--out"));
             return parse_verb(verb, rest);
         }
-    throw Error(ErrorKind::usage, fmt::format("'{}' is not a verb{}; accepted: {}, --help or --version\n"
-                                              "'tetrace help' describes them",
-                                              first, did_you_mean(first, names_of_verbs()), join_names(all_verbs())));
+    reject_verb(first, names_of_verbs());
 }
 
 namespace {
@@ -369,7 +372,9 @@ Shard shard_of(const Options& options)
 
 std::vector<std::uint32_t> selected_views(const Options& options)
 {
-    return dealt(parse_views(options.views, camera_set_size(options)), shard_of(options));
+    return dealt(
+        parse_views(options.views, camera_set_size(options), options.verb == Verb::trace ? "--view" : "--views"),
+        shard_of(options));
 }
 
 } // namespace tetrace

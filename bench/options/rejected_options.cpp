@@ -2,6 +2,7 @@
 
 #include "bench/options/option_table.h"
 #include "bench/options/option_values.h"
+#include "scenes/catalogue.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -20,7 +21,38 @@ constexpr Renamed renamed[] = {{Verb::check, "--picture", "--differences"},
                                {Verb::report, "--picture", "--image"},
                                {Verb::inspect, "--require", "--require-target"}};
 
+/// Empty if none does.
+std::string verbs_taking_option(const std::string& name)
+{
+    std::vector<std::string> verbs;
+    for (const Verb verb : values_of<Verb>())
+        if (std::ranges::any_of(option_table(),
+                                [&](const OptionRow& row) { return row.name == name && takes(verb, row); }))
+            verbs.emplace_back(name_of(verb));
+    return join_alternatives(verbs);
+}
+
 } // namespace
+
+std::string without_value(const std::string& problem)
+{
+    const std::string name = problem.substr(0, problem.find(':'));
+    const auto row = std::ranges::find(option_table(), name, &OptionRow::name);
+    if (row == option_table().end()) return problem;
+    return row->value.empty() ? name + " takes no value" : fmt::format("{} needs a value: {}", name, row->value);
+}
+
+void reject_verb(const std::string& word, std::vector<std::string> verbs)
+{
+    verbs.insert(verbs.end(), {"--help", "--version"});
+    const std::string guess = did_you_mean(word, verbs);
+    const std::string reason = find_in_catalogue(word) != nullptr
+                                   ? fmt::format("; a scene is 'tetrace bench --scene {}'; accepted", word)
+                               : guess.empty() ? "; accepted"
+                                               : guess + " Accepted";
+    throw Error(ErrorKind::usage, fmt::format("'{}' is not a verb{}: {}\n'tetrace help' describes them", word, reason,
+                                              join_alternatives(verbs)));
+}
 
 std::vector<std::string> accepted_options(Verb verb)
 {
@@ -42,7 +74,10 @@ std::string not_accepted(Verb verb, const std::vector<std::string>& arguments, c
         for (const Renamed& option : renamed)
             if (option.verb == verb && option.before == name)
                 return fmt::format("{} of {} is now {}", name, name_of(verb), option.now);
-        return fmt::format("'{}' is not an option{}", name, did_you_mean(name, accepted));
+        const std::string guess = did_you_mean(name, accepted), others = verbs_taking_option(name);
+        if (guess.empty() && !others.empty())
+            return fmt::format("'{}' is not an option of {}, but of {}", name, name_of(verb), others);
+        return fmt::format("'{}' is not an option{}", name, guess);
     }
     const auto first = std::ranges::find_if(arguments, [&](const std::string& argument) {
         return std::ranges::find(unplaced, argument) != unplaced.end();

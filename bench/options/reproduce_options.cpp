@@ -10,14 +10,14 @@ std::vector<OptionRow> reproduce_options()
          "The tables and figures to regenerate: " + join_names(values_of<PaperTarget>()) +
              ". Default: all except rivals, which is not in the paper and is run by itself.",
          bit(Verb::reproduce), true, append("reproduce", &Options::targets),
-         {every_verb, "what to regenerate: {}"}},
+         usual_for(every_verb, "what to regenerate: {}")},
         {"Tables", "--builds", "LIST",
          "Which builds of the scenes: 'ours', a CDT built with the scene options; 'paper', for banana, bunny and "
          "armadillo, a CDT near the paper's counts, in a domain that contains the cameras; 'rays', tets optimised "
          "so that rays cross few faces, which decide no claim of the paper. Cubes, lattices and .tet files have "
          "only ours. Default: all.",
          bit(Verb::reproduce), true, append("--builds", &Options::paper_builds),
-         {every_verb, "builds of the scenes: {}"}},
+         usual_for(every_verb, "builds of the scenes: {}")},
         {"Tables", "--searches", "TETSxRAYS",
          "Exit searches of table5: the number of random tets, and the number of rays through each, a multiple of 8. "
          "Default: 10000x16384, as in the paper.",

@@ -184,7 +184,8 @@ int with_junit(const std::vector<RowRecord>& rows, const Options& options, const
     }
     const bool interrupted = code == exit_code(ErrorKind::interrupted);
     write_junit(rows, options,
-                interrupted ? fmt::format("the {} was interrupted: not all views were traced", name_of(options.verb)) : "");
+                interrupted ? fmt::format("the {} was interrupted: not all views were traced", name_of(options.verb))
+                            : "");
     return code;
 }
 

@@ -47,7 +47,8 @@ void say_how_to_go_on(const Options& options);
 /// Says so, where it was asked for, at the end of a run that was interrupted; the exit code.
 [[nodiscard]] int end_interrupted();
 
-/// Throws Error{missing} naming the first required backend of which no row is selected, so that it would pass unnoticed.
+/// Throws Error{missing} naming the first required backend of which no row is selected, so that it would pass
+/// unnoticed.
 void require_selected(const std::vector<RowKey>& keys, const Options& options);
 
 /// Whether --junit is for standard output.

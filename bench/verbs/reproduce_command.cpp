@@ -50,8 +50,7 @@ std::vector<RowKey> rows_of_run(const std::vector<SceneBuild>& builds, const Opt
     std::vector<RowKey> rows;
     for (const SceneBuild& build : builds)
         std::ranges::move(rows_of_build(build, options), std::back_inserter(rows));
-    if (wants(options, PaperTarget::table5))
-        std::ranges::move(select_search_rows(options), std::back_inserter(rows));
+    if (wants(options, PaperTarget::table5)) std::ranges::move(select_search_rows(options), std::back_inserter(rows));
     return rows;
 }
 

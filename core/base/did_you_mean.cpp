@@ -34,15 +34,18 @@ std::string did_you_mean(const std::string& text, const std::vector<std::string>
 {
     std::size_t nearest = std::min<std::size_t>(2, text.size() / 3) + 1;
     std::string found;
+    bool is_tie = false;
     for (const std::string& name : names) {
         const auto [shorter, longer] = std::minmax({text.size(), name.size()});
-        if (longer - shorter >= nearest) continue; // at least this many slips; a text may be as long as a command line
+        if (longer - shorter > nearest) continue; // at least this many slips; a text may be as long as a command line
         if (const std::size_t slips = slips_between(text, name); slips < nearest) {
             nearest = slips;
             found = name;
-        }
+            is_tie = false;
+        } else if (!found.empty() && slips == nearest)
+            is_tie = true;
     }
-    return found.empty() ? found : "; did you mean " + found + "?";
+    return found.empty() || is_tie ? std::string() : "; did you mean " + found + "?";
 }
 
 } // namespace tetrace

@@ -29,7 +29,7 @@ TEST_F(Program, describes_itself)
                                    "compare", "show", "report", "help"}) {
         const Ended help = run(std::string(verb) + (std::string(verb) == "help" ? "" : " --help"));
         EXPECT_EQ(help.code, 0);
-        EXPECT_TRUE(contains(help.out, "Examples")) << verb;
+        EXPECT_TRUE(contains(help.out, "Example")) << verb;
         EXPECT_EQ(help.errors, "");
     }
     EXPECT_TRUE(contains(run("help options").out, "| `--scene SCENE` |"));
