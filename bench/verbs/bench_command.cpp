@@ -112,18 +112,22 @@ int bench_command(const Options& options)
     check_anonymous(options, flags);
     check_resume(options, flags);
     check_junit(options, flags);
-    const bool lists = options.list || flags.list_tests;
-    if (!lists) require_devices(options.required); // first: its reason for an empty selection is better
-    const auto keys =
-        selected_rows(options, [&](const std::string& name) { return benchmark_filter_keeps(flags.filter, name); });
-    if (lists) return list_rows(keys);
-    require_selected(keys, options);
+    const auto select = [&] {
+        return selected_rows(options,
+                             [&](const std::string& name) { return benchmark_filter_keeps(flags.filter, name); });
+    };
+    if (options.list || flags.list_tests) return list_rows(select());
     check_output(options);
     const StopWhenInterrupted stop;
     check_columns(options, bench_columns());
     if (!flags.out.empty()) check_writable("--benchmark_out", flags.out);
     std::vector<RowRecord> rows;
-    return with_junit(rows, options, [&] { return bench(options, flags, keys, rows); });
+    return with_junit(rows, options, [&] {
+        require_devices(options.required); // first: its reason for an empty selection is better
+        const auto keys = select();
+        require_selected(keys, options);
+        return bench(options, flags, keys, rows);
+    });
 }
 
 } // namespace tetrace

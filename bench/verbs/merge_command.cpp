@@ -188,7 +188,10 @@ int merge_command(const Options& asked)
     Sheet more = machines_sheet(section["merged"]);
     merged.report.sheet.append(more);
     if (!merged.report.markdown.empty()) merged.report.markdown += more.markdown();
-    deliver(options, merged.report);
+    if (!prints_junit(options))
+        deliver(options, merged.report);
+    else if (options.out)
+        deliver_to_file(options, merged.report);
     if (merged.error) throw *merged.error;
     return merged.code;
 }

@@ -1,6 +1,7 @@
 // What people get wrong on a command line, and the first words that answer it.
 #include "tests/support/program_fixture.h"
 
+#include <filesystem>
 #include <gtest/gtest.h>
 
 using namespace tetrace;
@@ -90,7 +91,7 @@ constexpr Wrong wrong_usages[] = {
     {"bench --no-repair --repair", 2, "--no-repair: --repair is given, too; leave one of them out"},
     {"bench --tets cdt,rays", 2, "--tets accepts one value for 'bench'; lists are for 'tetrace build'"},
     {"bench --backend openmp --filter '('", 2, "--filter: '(' is not a regular expression (RE2 syntax): "},
-    {"bench --backend openmp --columns mrays", 2, "--columns: no table has the column 'mrays'; accepted: row, "},
+    {"bench --columns mrays", 2, "--columns: no table has the column 'mrays'; accepted: row, "},
     {"bench --backend openmp --junit - --benchmark_format=json", 2, "--junit -: --benchmark_format writes to "},
     {"bench --backend openmp --require embree", 3, "--require embree: no row of embree is selected, so none would be "},
     {"check --defects --shard 1/2", 2, "--defects takes only seconds and cannot be sharded; leave out --shard"},
@@ -113,5 +114,6 @@ TEST_F(WrongUsage, is_answered_with_what_is_wrong_first_and_nothing_is_written)
         EXPECT_EQ(ended.out, "") << arguments;
     }
     EXPECT_TRUE(contains(run("bench --backend openmp --scene buny").errors, "; did you mean bunny?"));
-    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 3) << "its output, and the cache";
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
+        EXPECT_TRUE(entry.is_directory() || entry.path().filename().string().starts_with("std")) << entry.path();
 }
