@@ -101,6 +101,7 @@ TEST_F(Messages, a_check_that_a_signal_ends_while_a_scene_is_built_writes_junit_
         const Ended ended = run("check --backend openmp --scene knot.off,cubes --junit j.xml --out r.json");
         EXPECT_EQ(ended.code, 130) << ended.errors;
         EXPECT_TRUE(contains(file("j.xml"), "the check was interrupted")) << file("j.xml");
+        EXPECT_FALSE(contains(ended.out, "self-test")) << "no device was opened: " << ended.out;
         const auto result = nlohmann::json::parse(file("r.json"))["tetrace"];
         EXPECT_EQ(result["interrupted"], true);
         for (const auto& row : result["rows"])
