@@ -3,10 +3,8 @@
 #include "bench/options/help.h"
 #include "bench/options/option_table.h"
 
-#include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <functional>
 
 namespace tetrace {
 
@@ -68,17 +66,17 @@ std::vector<const OptionRow*> rows_of_options(Verb verb)
     return rows;
 }
 
-/// Lines of a `case` over "VERB", or "VERB OPTION" of the rows that `keeps` keeps.
-std::string option_cases(const std::function<bool(const OptionRow&)>& keeps,
-                         const std::function<std::string(const OptionRow&)>& action)
+/// Lines of a bash `case` over "VERB OPTION": what completes the option's value.
+std::string bash_values()
 {
     std::string cases;
     for (const OptionRow& row : option_table()) {
-        if (!is_option(row) || !keeps(row)) continue;
+        if (!is_option(row) || row.value.empty()) continue;
         std::vector<std::string> verbs;
         for (const VerbHelp& verb : verb_helps())
             if (takes(verb.verb, row)) verbs.push_back(fmt::format("'{} {}'", name_of(verb.verb), row.name));
-        cases += fmt::format("    {}) {} ;;\n", fmt::join(verbs, "|"), action(row));
+        cases += fmt::format("    {}) words='{}' files={} ;;\n", fmt::join(verbs, "|"),
+                             fmt::join(row.apply.names(), " "), row.apply.takes_files() ? "'*'" : "");
     }
     return cases;
 }
@@ -98,13 +96,7 @@ std::string bash_completion()
         else if (file_arguments(verb.verb).max > 0)
             words += fmt::format("    {}) files='*.json' ;;\n", name_of(verb.verb));
     }
-    const std::string values =
-        option_cases([](const OptionRow& row) { return !row.value.empty(); },
-                     [](const OptionRow& row) {
-                         return fmt::format("words='{}' files={}", fmt::join(row.apply.names(), " "),
-                                            row.apply.takes_files() ? "'*'" : "");
-                     });
-    // Bash makes words of "--option=value" at the "=". Of a list, the part after its last comma is completed.
+    // Bash makes words of "--option=value" at the "=". In a list, what follows the last comma is completed.
     return fmt::format(R"(# Completes command lines of tetrace in bash.
 _tetrace()
 {{
@@ -139,7 +131,7 @@ _tetrace()
 }}
 complete -o default -F _tetrace tetrace
 )",
-                       verb_words(), values, options, words);
+                       verb_words(), bash_values(), options, words);
 }
 
 namespace {

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t text_column = 24; ///< in which the lines of options begin
 
 /// A head, and text to its right.
-std::string beside(const std::string& head, const std::string& text, std::size_t width)
+std::string in_columns(const std::string& head, const std::string& text, std::size_t width)
 {
     const std::string lines = wrapped(text, width, text_column);
     return head.size() < text_column ? fmt::format("{:<{}}", head, text_column) + lines.substr(text_column)
@@ -30,8 +30,8 @@ std::string usual_options(Verb verb, std::size_t width)
     std::string text;
     for (const OptionRow& row : option_table())
         if (is_usual(row, verb))
-            text += beside(fmt::format("  {} {}", row.name, is_option(row) ? row.value : ""),
-                           fmt::format(fmt::runtime(row.usual.line), join_alternatives(row.apply.names())), width);
+            text += in_columns(fmt::format("  {} {}", row.name, is_option(row) ? row.value : ""),
+                               fmt::format(fmt::runtime(row.usual.line), join_alternatives(row.apply.names())), width);
     return text;
 }
 
@@ -70,9 +70,9 @@ std::string first_page(const VerbHelp& help, std::size_t width)
     const std::string options = usual_options(help.verb, width);
     return fmt::format("{}\n\n{}\n{}{}{}{}{}", usage_of(help.verb),
                        wrapped(std::string(description.substr(0, sentence)) + ".", width, 0), options,
-                       options.empty() ? "" : "\n", beside("Example", std::string(example_of(help)), width),
-                       beside("Exit codes", exit_code_line(), width),
-                       beside("All options", fmt::format("tetrace help {} all", name_of(help.verb)), width));
+                       options.empty() ? "" : "\n", in_columns("Example", std::string(example_of(help)), width),
+                       in_columns("Exit codes", exit_code_line(), width),
+                       in_columns("All options", fmt::format("tetrace help {} all", name_of(help.verb)), width));
 }
 
 } // namespace tetrace

@@ -14,7 +14,7 @@ namespace tetrace {
 class ApplyOption {
 public:
     /// take: takes one value; throws Error{usage} if it is not accepted. names: what it accepts by name, in the order
-    /// of help; empty for numbers and any text. takes_files: whether a file's name is accepted, perhaps besides these.
+    /// of help; empty for numbers and any text. takes_files: whether a file's name is accepted, too or instead.
     template <std::invocable<Options&, const std::string&> Take>
     ApplyOption(Take take, std::vector<std::string> names = {}, bool takes_files = false)
         : take_(std::move(take)), names_(std::move(names)), takes_files_(takes_files)
