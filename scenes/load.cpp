@@ -1,5 +1,6 @@
 #include "scenes/load.h"
 
+#include "core/base/did_you_mean.h"
 #include "core/base/error.h"
 #include "core/base/files.h"
 #include "core/base/hash.h"
@@ -313,14 +314,15 @@ LoadedScene load_mesh_scene(const SceneRequest& request, const fs::path& mesh, c
 
 [[noreturn]] void refuse_name(const std::string& name)
 {
-    std::string names;
+    std::vector<std::string> names;
     for (const CatalogueEntry& entry : catalogue())
-        names += (names.empty() ? "" : ", ") + entry.name;
+        names.push_back(entry.name);
     const bool is_path = name.find('/') != std::string::npos || fs::path(name).has_extension();
-    throw Error(is_path ? ErrorKind::missing : ErrorKind::usage,
-                fmt::format("scene {}: neither a name of the catalogue ({}) nor a file; give one of these "
-                            "names, or the path of a mesh (.ply, .obj, .off, .stl, .glb, .gltf) or of a .tet file",
-                            name, names));
+    throw Error(
+        is_path ? ErrorKind::missing : ErrorKind::usage,
+        fmt::format("scene {}: neither a name of the catalogue ({}) nor a file; give one of these names, or the "
+                    "path of a mesh (.ply, .obj, .off, .stl, .glb, .gltf) or of a .tet file{}",
+                    name, fmt::join(names, ", "), did_you_mean(name, names)));
 }
 
 } // namespace

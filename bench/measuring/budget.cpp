@@ -14,9 +14,10 @@ namespace tetrace {
 
 namespace {
 
-constexpr double slack = 0.25;    // of the budget, see the class
-constexpr double telling_s = 0.1; // launch overhead is a small part of a probe that takes this long
-constexpr double patience = 0.02; // of what is left of the budget: a probe that takes this long is not repeated
+constexpr double slack = 0.25;      // of the budget, see the class
+constexpr double telling_s = 0.1;   // launch overhead is a small part of a probe that takes this long
+constexpr double estimating = 0.03; // of the budget: probes of all rows that take this long together tell enough
+constexpr double patience = 0.02;   // of what is left of the budget: a probe that takes this long is not repeated
 constexpr unsigned coarsest_step = 16;
 
 std::size_t first_view_with_rays(const RowRun& row)
@@ -57,8 +58,9 @@ TraceJob prepare_probe(RowRun& row, std::size_t view, unsigned step)
 }
 
 /// Estimates the seconds of a view by tracing more and more of its rays, until there are enough for an estimate. The
-/// first launch, in which devices may compile, does not count; its time goes into the row's first pass.
-double estimated_view_s(RowRun& row, const Clock& clock, double left_s)
+/// first launch, in which devices may compile, does not count; its time goes into the row's first pass. enough_s: what
+/// a probe takes at most, if it can be made so short.
+double estimated_view_s(RowRun& row, const Clock& clock, double left_s, double enough_s)
 {
     const std::size_t view = first_view_with_rays(row);
     if (view == row.scene->views().size()) return 0;
@@ -74,9 +76,9 @@ double estimated_view_s(RowRun& row, const Clock& clock, double left_s)
     for (;; step /= 2) {
         // The quickest of three where the first is slow: on a busy machine a thread may wait longer than it works.
         auto [seconds, rays] = launch();
-        for (int again = 0; again < 2 && seconds >= telling_s && seconds < patience_s; ++again)
+        for (int again = 0; again < 2 && seconds >= enough_s && seconds < patience_s; ++again)
             seconds = std::min(seconds, launch().first);
-        if (seconds >= telling_s || step == 1) return seconds / rays * static_cast<double>(ray_count(row, view));
+        if (seconds >= enough_s || step == 1) return seconds / rays * static_cast<double>(ray_count(row, view));
     }
 }
 
@@ -113,13 +115,21 @@ void Budget::plan(std::vector<RowRun>& rows, const Entry& samples, std::size_t f
 {
     start_s_ = now();
     if (std::isinf(seconds_)) return;
+    const double enough_s = std::min(telling_s, estimating * seconds_ / static_cast<double>(rows.size()));
     for (std::size_t i = 0; i < rows.size(); ++i) {
         RowRun& row = rows[i];
         progress_line().show("estimating", static_cast<double>(i) / static_cast<double>(rows.size()), -1,
                              row_label(row.key));
         Entry entry = samples;
         entry.row = &row;
-        if (is_alive(row)) guarded(row, [&] { entry.view_s = estimated_view_s(row, clock_, left_s()); });
+        if (is_alive(row) && !entries_.empty() && left_s() <= 0) {
+            row.outcome =
+                Skipped{Status::skipped, fmt::format("--budget of {} was spent before this row was estimated; "
+                                                     "with more it is measured",
+                                                     seconds_text(seconds_))};
+            row.session.reset();
+        }
+        if (is_alive(row)) guarded(row, [&] { entry.view_s = estimated_view_s(row, clock_, left_s(), enough_s); });
         if (!is_alive(row)) continue;
         entry.views = static_cast<double>(row.scene->views().size() - first_view);
         entry.views_left =
@@ -134,15 +144,11 @@ void Budget::plan(std::vector<RowRun>& rows, const Entry& samples, std::size_t f
         entry.is_reference = std::ranges::any_of(
             entries_, [&](const Entry& other) { return reference_of(other.row->key) == entry.row->key; });
     fit(left_s());
-    if (needed_s() > max_budgets * seconds_)
-        throw Error(ErrorKind::usage,
-                    fmt::format("--budget: even one row would take about {}, and {} of {} is left; use "
-                                "--budget {}, other rows, fewer --views or a smaller --size",
-                                seconds_text(needed_s()), seconds_text(std::max(0.0, left_s())), seconds_text(seconds_),
-                                budget_text(1.25 * (now() - start_s_ + needed_s()))));
     if (alive() == 1 && needed_s() > left_s())
-        say(fmt::format("--budget: even one row takes about {}, but {} is left; it is measured anyway",
-                        seconds_text(needed_s()), seconds_text(std::max(0.0, left_s()))));
+        say(fmt::format(
+            "--budget: even one row would take about {}, and {} of {} is left; it is measured anyway. Other "
+            "rows, fewer --views or a smaller --size take less",
+            seconds_text(needed_s()), seconds_text(std::max(0.0, left_s())), seconds_text(seconds_)));
 }
 
 /// A sample of several passes has one more, which is launched by itself, and up to one more than it needs.
@@ -204,15 +210,15 @@ void Budget::review_timed()
 
 void Budget::fit(double affordable_s)
 {
-    while (needed_s(true) > affordable_s && skip_last_scene(affordable_s)) {
+    while (needed_s(true) > affordable_s && skip_last_scene()) {
     }
-    while (needed_s(true) > affordable_s && skip_slowest_reference(affordable_s)) {
+    while (needed_s(true) > affordable_s && skip_slowest_reference()) {
     }
     skip_slowest(affordable_s, false);
 }
 
 /// Of those with a row that is still in the run; never the only one. Whether there was one.
-bool Budget::skip_last_scene(double affordable_s)
+bool Budget::skip_last_scene()
 {
     const auto is_left = [](const Entry& entry) { return is_alive(*entry.row); };
     const auto first = std::ranges::find_if(entries_, is_left);
@@ -220,12 +226,12 @@ bool Budget::skip_last_scene(double affordable_s)
     if (first == entries_.end() || first->row->scene == last->row->scene) return false;
     const SceneWork* const scene = last->row->scene;
     for (Entry& entry : entries_)
-        if (entry.row->scene == scene && is_alive(*entry.row)) skip(entry, affordable_s);
+        if (entry.row->scene == scene && is_alive(*entry.row)) skip(entry);
     return true;
 }
 
 /// With the rows that are compared with it; never the only one. Whether there was one.
-bool Budget::skip_slowest_reference(double affordable_s)
+bool Budget::skip_slowest_reference()
 {
     Entry* const slow = slowest(true);
     const auto is_other = [&](const Entry& entry) {
@@ -234,8 +240,7 @@ bool Budget::skip_slowest_reference(double affordable_s)
     if (slow == nullptr || std::ranges::none_of(entries_, is_other)) return false;
     const RowKey reference = slow->row->key;
     for (Entry& entry : entries_)
-        if (is_alive(*entry.row) && (&entry == slow || reference_of(entry.row->key) == reference))
-            skip(entry, affordable_s);
+        if (is_alive(*entry.row) && (&entry == slow || reference_of(entry.row->key) == reference)) skip(entry);
     return true;
 }
 
@@ -245,7 +250,7 @@ bool Budget::skip_slowest(double affordable_s, bool among_references)
     while (needed_s() > affordable_s) {
         Entry* const entry = slowest(among_references);
         if (entry == nullptr || alive() == 1) return false;
-        skip(*entry, affordable_s);
+        skip(*entry);
     }
     return true;
 }
@@ -261,18 +266,17 @@ Budget::Entry* Budget::slowest(bool among_references)
     return found;
 }
 
-void Budget::skip(Entry& entry, double affordable_s)
+void Budget::skip(Entry& entry)
 {
-    RowRun& row = *entry.row;
     const double judging_before_s = judging_s();
-    if (!fails(row, true)) // an answer that is known to be wrong is always reported
-        row.outcome =
-            Skipped{Status::skipped,
-                    fmt::format("would take about {}; --budget leaves {} for all rows; with --budget {} it is "
-                                "measured",
-                                seconds_text(entry.need_s()), seconds_text(std::max(0.0, affordable_s)), sufficient())};
-    row.session.reset();
-    skipped_s_ += entry.need_s() + judging_before_s - judging_s();
+    entry.skipped_s = entry.need_s();
+    entry.row->session.reset();
+    skipped_s_ += *entry.skipped_s + judging_before_s - judging_s();
+    for (const Entry& other : entries_)
+        if (other.skipped_s && !fails(*other.row, true)) // an answer that is known to be wrong is always reported
+            other.row->outcome =
+                Skipped{Status::skipped, fmt::format("would take about {}{}{} it is measured",
+                                                     seconds_text(*other.skipped_s), with_budget, sufficient())};
 }
 
 /// A budget that fits all rows, including the skipped ones: a quarter more than their expected time.

@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,9 @@ namespace tetrace {
 
 /// Passes of a sample: a launch of Vulkan's lists them all.
 inline constexpr std::uint32_t max_passes = 4096;
+
+/// What the reasons of rows that Budget skips have in common: the --budget that runs all of them follows.
+inline constexpr const char* with_budget = "; with --budget ";
 
 /// Keeps a run within the seconds of --budget. A row needs a pass over its views to be verified, its first view once
 /// more, a warm-up pass, and min_samples samples with their passes of single launches (latency_passes()). Where the
@@ -23,12 +27,9 @@ inline constexpr std::uint32_t max_passes = 4096;
 ///
 /// Estimates are corrected as rows are traced. plan() holds the rows to the budget itself. Later reviews allow a
 /// quarter more, so that noise skips no row. A run takes at most 1.25 budgets plus the pass that is running at that
-/// moment; if the last row with the judging of its scene takes longer, as long as these.
+/// moment; if the last row with the judging of its scene takes longer, as long as these: one row is always measured.
 class Budget {
 public:
-    /// A run is refused if even one row would take longer than this many budgets.
-    static constexpr double max_budgets = 4;
-
     /// Starts the clock. seconds: infinity means no limit; then all functions below do nothing.
     explicit Budget(double seconds = std::numeric_limits<double>::infinity(), Clock clock = host_clock());
 
@@ -39,7 +40,7 @@ public:
     /// Restarts the clock, estimates the rows by tracing a part of their rays, and skips those that do not fit. Rows
     /// that cannot be traced end with their reason. rows: opened; they keep their addresses while the budget is used.
     /// samples: the number asked for, in each of so many runs; 0: rows are only verified. sample_s: that each lasts at
-    /// least. Throws Error{usage} where the last row would take more than max_budgets budgets.
+    /// least. Says so if the last row does not fit.
     void plan(std::vector<RowRun>& rows, unsigned samples, double sample_s = 0, unsigned runs = 1);
     /// The same for rows that are verified and timed view by view, in samples of a view, from the view `first` on.
     void plan_views(std::vector<RowRun>& rows, unsigned samples, double sample_s, std::size_t first);
@@ -67,6 +68,7 @@ private:
         double views = 0, samples = 0, sample_s = 0, runs = 1;
         double views_per_sample = 0;
         double seen_s = 0, seen_views = 0;
+        std::optional<double> skipped_s = {}; ///< what it needed when it was skipped
 
         [[nodiscard]] double need_s() const;
     };
@@ -77,9 +79,9 @@ private:
     [[nodiscard]] double needed_s(bool by_references_only = false) const;
     [[nodiscard]] std::size_t alive() const;
     [[nodiscard]] Entry* slowest(bool among_references);
-    void skip(Entry& entry, double affordable_s);
-    bool skip_last_scene(double affordable_s);
-    bool skip_slowest_reference(double affordable_s);
+    void skip(Entry& entry);
+    bool skip_last_scene();
+    bool skip_slowest_reference();
     bool skip_slowest(double affordable_s, bool among_references);
     void fit(double affordable_s);
     [[nodiscard]] std::string sufficient() const;

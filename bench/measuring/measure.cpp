@@ -378,9 +378,23 @@ EarlierSamples restore_samples(std::vector<RowRun>& rows, const Journal& journal
     return earlier;
 }
 
+/// A rate has an interval, or the row has none.
+void drop_few_samples(std::vector<RowRun>& rows, unsigned asked)
+{
+    for (RowRun& row : rows)
+        if (row.samples_s.size() < std::min<std::size_t>(min_samples, asked)) {
+            row.samples_s.clear();
+            row.wall_samples_s.clear();
+            row.latency_samples_s.clear();
+            row.run_samples.clear();
+            row.readings.reset();
+            row.pulse_ratio.reset();
+            row.disturbance.clear();
+        }
+}
+
 void check_rows_after(std::vector<RowRun>& rows)
 {
-    if (is_interrupted()) return;
     for (RowRun& row : rows)
         if (is_timed(row))
             guarded(row, [&] {
@@ -420,6 +434,7 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
     const TimedPart part = warm_up_rows(rows, options.samples, sampler, budget);
     if (is_interrupted()) {
         count_samples(rows);
+        drop_few_samples(rows, options.samples);
         return result;
     }
     watch.pulses().watch(pointers_to(rows), last_view_pulse(budget.clock()));
@@ -464,7 +479,10 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
     watch.pulses().judge_rows(rows, result.load);
     progress_line().clear();
     google.write();
-    check_rows_after(rows);
+    if (is_interrupted())
+        drop_few_samples(rows, result.samples);
+    else
+        check_rows_after(rows);
     result.wall_s = stopwatch.seconds();
     return result;
 }

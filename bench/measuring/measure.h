@@ -31,9 +31,10 @@ struct Measurement {
 /// fail end with their reason, and so do rows for which the budget has no time. GPUs are asked for their clocks, power
 /// and throttling during each sample (see Sampler). Meanwhile the pulse is taken, and rows learn what it says of their
 /// rates. Writes the file of --benchmark_out. With options.runs above 1 all of it is done that often, each time with
-/// new sessions. After an interrupt, rows keep the samples that they have. shared: a watch; and a journal, which gets
-/// the samples now and then, or has some already, which are not taken again. Throws Error{invalid_input} if that file,
-/// or what Google Benchmark prints, cannot be written, Error{usage} if the journal is damaged.
+/// new sessions. After an interrupt, rows with 5 samples or more, or with all, keep them; the others have none. shared:
+/// a watch; and a journal, which gets the samples now and then, or has some already, which are not taken again. Throws
+/// Error{invalid_input} if that file, or what Google Benchmark prints, cannot be written, Error{usage} if the journal
+/// is damaged.
 [[nodiscard]] Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, const BenchmarkFlags& flags,
                                        const Recording& shared);
 /// The same without a journal. host: the work of its pulse; openmp::pulse_s() where it is empty. find_monitor: of a

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <span>
 
 namespace tetrace {
 
@@ -26,18 +27,38 @@ bool ends_rows(const Error& error)
     return error.kind() != ErrorKind::usage && error.kind() != ErrorKind::interrupted;
 }
 
+void skip_interrupted(SceneRows& result, std::span<const RowKey> keys)
+{
+    for (const RowKey& key : keys) {
+        RowRun& row = result.rows.emplace_back();
+        row.key = key;
+        end_interrupted(row);
+    }
+}
+
 void open_rows(SceneRows& result, const std::vector<RowKey>& keys, const SceneRequest& request, const Options& options)
 {
+    if (is_interrupted()) {
+        skip_interrupted(result, keys);
+        return;
+    }
     try {
         auto scene = std::make_unique<SceneWork>(load_work(request, options));
         for (const RowKey& key : keys) {
             const double done = static_cast<double>(&key - keys.data()) / static_cast<double>(keys.size());
             progress_line().show("opening " + scene->label(), done, -1, row_label(key));
-            if (is_interrupted()) throw Error(ErrorKind::interrupted, "interrupted before any row had an answer");
-            result.rows.push_back(open_row(key, *scene, options));
+            if (is_interrupted())
+                skip_interrupted(result, {&key, 1});
+            else
+                result.rows.push_back(open_row(key, *scene, options));
         }
         result.scenes.push_back(std::move(scene));
     } catch (const Error& error) {
+        if (error.kind() == ErrorKind::interrupted && is_stop_handled()) { // the builder had the signal
+            interrupt();
+            skip_interrupted(result, keys);
+            return;
+        }
         if (!ends_rows(error)) throw;
         say(fmt::format("{}: {}", scene_label(request.name), error.what()));
         for (const RowKey& key : keys)

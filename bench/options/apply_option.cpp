@@ -1,6 +1,7 @@
 #include "bench/options/apply_option.h"
 
 #include "core/device/backend.h"
+#include "scenes/catalogue.h"
 
 namespace tetrace {
 
@@ -18,11 +19,12 @@ std::vector<std::string> backend_names()
 
 ApplyOption append_backend(const std::string& option, std::vector<std::string> Options::*list)
 {
-    return [=](Options& options, const std::string& text) {
-        const auto names = backend_names();
-        if (std::ranges::find(names, text) == names.end()) reject_value(option, text, join_alternatives(names));
-        (options.*list).push_back(text);
-    };
+    const auto names = backend_names();
+    return {[=](Options& options, const std::string& text) {
+                if (std::ranges::find(names, text) == names.end()) reject_name(option, text, names);
+                (options.*list).push_back(text);
+            },
+            names};
 }
 
 ApplyOption set(bool Options::*flag)
@@ -59,36 +61,64 @@ ApplyOption append_text(std::vector<std::string> Options::*list)
     return [=](Options& options, const std::string& text) { (options.*list).push_back(text); };
 }
 
+namespace {
+
+std::filesystem::path named_file(const std::string& option, const std::string& text)
+{
+    if (text.empty()) throw Error(ErrorKind::usage, option + ": the file name is empty");
+    return text;
+}
+
+} // namespace
+
 ApplyOption set_path(const std::string& option, std::optional<std::filesystem::path> Options::*path)
 {
-    return [=](Options& options, const std::string& text) {
-        if (text.empty()) throw Error(ErrorKind::usage, option + ": the file name is empty");
-        options.*path = text;
-    };
+    return {[=](Options& options, const std::string& text) { options.*path = named_file(option, text); }, {}, true};
 }
 
-void append_scenes(Options& options, const std::string& text)
+ApplyOption append_path(const std::string& option, std::vector<std::filesystem::path> Options::*list)
 {
-    const std::vector<std::string> named = text == "all" ? all_scenes() : std::vector{text};
-    options.scenes.insert(options.scenes.end(), named.begin(), named.end());
+    return {[=](Options& options, const std::string& text) { (options.*list).push_back(named_file(option, text)); },
+            {},
+            true};
 }
 
-void set_cameras(Options& options, const std::string& text)
+ApplyOption append_scenes()
 {
-    if (text.ends_with(".json")) {
-        options.own_cameras = read_cameras(text);
-        return;
-    }
-    const auto set = value_named<CameraSet>(text);
-    if (!set) reject_value("--camera-set", text, join_names(values_of<CameraSet>()) + ", or a file that ends in .json");
-    options.camera_set = *set;
+    std::vector<std::string> names = {"all"};
+    for (const CatalogueEntry& scene : catalogue())
+        names.push_back(scene.name);
+    return {[](Options& options, const std::string& text) {
+                const std::vector<std::string> named = text == "all" ? all_scenes() : std::vector{text};
+                options.scenes.insert(options.scenes.end(), named.begin(), named.end());
+            },
+            names, true};
 }
 
-void set_out(Options& options, const std::string& text)
+ApplyOption set_cameras()
 {
-    set_path("--out", &Options::out)(options, text);
-    const bool is_result = options.verb != Verb::render && options.verb != Verb::report && options.verb != Verb::dump;
-    if (is_result && text == "-") options.out.reset();
+    return {[](Options& options, const std::string& text) {
+                if (text.ends_with(".json")) {
+                    options.own_cameras = read_cameras(text);
+                    return;
+                }
+                const auto set = value_named<CameraSet>(text);
+                if (!set) reject_name("--camera-set", text, all_names<CameraSet>(), ", or a file that ends in .json");
+                options.camera_set = *set;
+            },
+            all_names<CameraSet>(), true};
+}
+
+ApplyOption set_out()
+{
+    return {[](Options& options, const std::string& text) {
+                options.out = named_file("--out", text);
+                const bool is_result =
+                    options.verb != Verb::render && options.verb != Verb::report && options.verb != Verb::dump;
+                if (is_result && text == "-") options.out.reset();
+            },
+            {},
+            true};
 }
 
 } // namespace tetrace

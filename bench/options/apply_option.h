@@ -14,22 +14,31 @@ template <class T>
 [[nodiscard]] ApplyOption append(std::string option, std::vector<T> Options::*list,
                                  std::vector<T> accepted = values_of<T>())
 {
-    return
-        [=](Options& options, const std::string& text) { (options.*list).push_back(choose(option, text, accepted)); };
+    return {
+        [=](Options& options, const std::string& text) { (options.*list).push_back(choose(option, text, accepted)); },
+        all_names(accepted)};
+}
+
+/// The value with that name.
+template <class T, class Member>
+[[nodiscard]] ApplyOption set_choice(std::string option, Member Options::*member)
+{
+    return {[=](Options& options, const std::string& text) { options.*member = choose<T>(option, text); },
+            all_names<T>()};
 }
 
 /// The same; "all" means every value.
 template <class T>
 [[nodiscard]] ApplyOption append_or_all(std::string option, std::vector<T> Options::*list, std::vector<T> accepted)
 {
-    return [=](Options& options, const std::string& text) {
-        std::vector<std::string> names = {"all"};
-        for (const T& value : accepted) {
-            names.emplace_back(name_of(value));
-            if (text == "all" || text == names.back()) (options.*list).push_back(value);
-        }
-        if (std::ranges::find(names, text) == names.end()) reject_value(option, text, join_alternatives(names));
-    };
+    std::vector<std::string> names = all_names(accepted);
+    names.insert(names.begin(), "all");
+    return {[=](Options& options, const std::string& text) {
+                if (std::ranges::find(names, text) == names.end()) reject_name(option, text, names);
+                for (const T& value : accepted)
+                    if (text == "all" || text == name_of(value)) (options.*list).push_back(value);
+            },
+            names};
 }
 
 /// Appends the name of a backend.
@@ -47,12 +56,14 @@ template <class T>
 [[nodiscard]] ApplyOption append_text(std::vector<std::string> Options::*list);
 /// A file's name, not empty.
 [[nodiscard]] ApplyOption set_path(const std::string& option, std::optional<std::filesystem::path> Options::*path);
+/// Names of files, not empty.
+[[nodiscard]] ApplyOption append_path(const std::string& option, std::vector<std::filesystem::path> Options::*list);
 /// 'all' is every scene that is available (all_scenes()).
-void append_scenes(Options& options, const std::string& text);
+[[nodiscard]] ApplyOption append_scenes();
 
 /// A set of tetrace's by its name, or the user's own from a file.
-void set_cameras(Options& options, const std::string& text);
+[[nodiscard]] ApplyOption set_cameras();
 /// Of --out; "-" means none for a result.
-void set_out(Options& options, const std::string& text);
+[[nodiscard]] ApplyOption set_out();
 
 } // namespace tetrace

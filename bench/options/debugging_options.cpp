@@ -30,18 +30,20 @@ std::vector<OptionRow> inspect_options()
         {"Compilers", "--target", "GPU",
          "Compile for this GPU, which need not be here: AMD's as RADV names them (gfx1100, navi21, gfx906, ...), "
          "NVIDIA's as nvcc does (sm_75, sm_90, ...). Default: gfx1100, navi21, gfx906, sm_75, sm_90.",
-         bit(Verb::inspect), true, append_text(&Options::gpus)},
+         bit(Verb::inspect), true, append_text(&Options::gpus),
+         usual_for(every_verb, "compile for this GPU: gfx1100, sm_90, ...")},
         {experiments, "--entry", "NAME",
          "Keep the entry points of this kind: 'outside' and 'inside', primary rays that start outside the domain or "
          "in a tet; 'rays', given rays; 'search', exit searches of table5. Default: all.",
          bit(Verb::inspect), true, append("--entry", &Options::entries)},
         {"Compilers", "--require-target", "GPU",
          "Fail with exit code 3 unless this target's compiler is here and compiles every program.", bit(Verb::inspect),
-         true, append_text(&Options::required)},
+         true, append_text(&Options::required), usual_for(every_verb, "fail unless this GPU's compiler is here")},
         {"Compilers", "--code", "FOLDER",
          "Write the code of every program into this folder: AMD's assembly; NVIDIA's PTX, and machine code if "
          "nvdisasm is installed. Default: none.",
-         bit(Verb::inspect), false, set_path("--code", &Options::code_folder)},
+         bit(Verb::inspect), false, set_path("--code", &Options::code_folder),
+         usual_for(every_verb, "write the code of every program")},
     };
 }
 
@@ -49,9 +51,11 @@ std::vector<OptionRow> trace_options()
 {
     return {
         {"Ray", "--view", "N", "The view of the camera set, numbered from 0. Default: 0.", bit(Verb::trace), false,
-         [](Options& o, const std::string& v) { o.views = fmt::format("{}", parse_count("--view", v, 0, 1u << 30)); }},
+         [](Options& o, const std::string& v) { o.views = fmt::format("{}", parse_count("--view", v, 0, 1u << 30)); },
+         usual_for(every_verb, "the view of the camera set")},
         {"Ray", "--pixel", "X,Y", "The pixel whose ray is traced; 0,0 is the image's upper left. Required.",
-         bit(Verb::trace), false, [](Options& o, const std::string& v) { o.pixel = parse_pixel("--pixel", v); }},
+         bit(Verb::trace), false, [](Options& o, const std::string& v) { o.pixel = parse_pixel("--pixel", v); },
+         usual_for(every_verb, "the pixel; 0,0 is the upper left")},
     };
 }
 

@@ -1,5 +1,6 @@
 #include "bench/options/help.h"
 
+#include "bench/options/completion.h"
 #include "bench/options/identity.h"
 #include "bench/options/manual.h"
 #include "bench/options/option_table.h"
@@ -250,10 +251,13 @@ const VerbHelp verb_help[] = {
      "  tetrace merge 1.json 2.json --out both.json\n"
      "  srun -n 4 tetrace reproduce table4 --scene bunny --out all.json   shards and merges by itself\n"},
     {Verb::help, "describe the program or a verb",
-     "Describes the program, or a verb. 'tetrace help options' prints a Markdown table of all options, 'tetrace help "
-     "man' a manual page for man, and 'tetrace help bash' or 'zsh' a completion script for that shell.",
+     "Describes the program, or a verb: its usual options, and with 'all', or '--help=all', everything. 'tetrace help "
+     "options' prints a Markdown table of all options, 'tetrace help man' a manual page for man, and 'tetrace help "
+     "bash', "
+     "'zsh' or 'fish' a completion script for that shell.",
      "  tetrace help bench\n"
-     "  source <(tetrace help bash)               complete verbs and options with the tab key\n"},
+     "  tetrace help bench all\n"
+     "  source <(tetrace help bash)               complete verbs, options and values with the tab key\n"},
 };
 
 std::string exit_codes()
@@ -293,11 +297,8 @@ std::string option_entries(Verb verb)
 std::string verb_text(const VerbHelp& entry)
 {
     const std::string_view name = name_of(entry.verb);
-    const FileArguments files = file_arguments(entry.verb);
-    std::string text =
-        fmt::format("tetrace {}: {}\n\nUsage: tetrace {} {}{}{}\n\n{}\n", name, entry.summary, name, files.names,
-                    files.max > 0 ? " " : "", entry.verb == Verb::help ? "[VERB | options]" : "[OPTION]...",
-                    wrapped_without_orphans(entry.description, page_width(), 0));
+    std::string text = fmt::format("tetrace {}: {}\n\n{}\n\n{}\n", name, entry.summary, usage_of(entry.verb),
+                                   wrapped_without_orphans(entry.description, page_width(), 0));
     if (const std::string entries = option_entries(entry.verb); !entries.empty()) text += entries + "\n";
     text += fmt::format("Examples\n{}\n", entry.examples);
     return text + exit_codes();
@@ -311,7 +312,8 @@ std::string program_text()
         "\nUsage: tetrace VERB [OPTION]...\n\n";
     for (const VerbHelp& entry : verb_help)
         text += fmt::format("  {:<10}{}\n", name_of(entry.verb), entry.summary);
-    text += "\n" + wrapped("'tetrace help VERB' or 'tetrace VERB --help' describes a verb with all its options. "
+    text += "\n" + wrapped("'tetrace help VERB' or 'tetrace VERB --help' describes a verb in a screen, 'tetrace help "
+                           "VERB all' or 'tetrace VERB --help=all' with all its options. "
                            "Results go to standard output, or to --out FILE: either the complete file is written, or "
                            "none, with exit code 2. Messages and progress go to standard error: a line that is "
                            "redrawn, or a line every 30 seconds without a terminal. On a terminal, output has "
@@ -358,15 +360,17 @@ std::span<const VerbHelp> verb_helps()
     return verb_help;
 }
 
-std::string help_text(const std::string& topic)
+std::string help_text(const std::string& topic, bool whole)
 {
     if (topic.empty()) return program_text();
     if (topic == "options") return options_markdown();
     if (topic == "man") return man_page();
     if (topic == "bash") return bash_completion();
     if (topic == "zsh") return zsh_completion();
+    if (topic == "fish") return fish_completion();
     for (const VerbHelp& entry : verb_help)
-        if (name_of(entry.verb) == topic) return verb_text(entry);
+        if (name_of(entry.verb) == topic)
+            return whole ? verb_text(entry) : first_page(entry, std::min<std::size_t>(page_width(), 80));
     throw Error(ErrorKind::internal, "help_text: no help for '" + topic + "'");
 }
 

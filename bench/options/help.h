@@ -29,11 +29,16 @@ inline constexpr std::pair<int, const char*> exit_code_meanings[] = {
     {4, "an internal error"}};
 
 /// Topics of help that are not verbs.
-inline constexpr std::string_view other_topics[] = {"options", "man", "bash", "zsh"};
+inline constexpr std::string_view other_topics[] = {"options", "man", "bash", "zsh", "fish"};
 
 /// What `tetrace help TOPIC` prints: the program (empty topic), a verb, "options", the Markdown table of all options,
-/// or what manual.h makes.
-[[nodiscard]] std::string help_text(const std::string& topic);
+/// or what manual.h and completion.h make. whole: of a verb everything, in place of its first_page().
+[[nodiscard]] std::string help_text(const std::string& topic, bool whole = false);
+
+/// A verb's help in one screen: usage, the usual options, an example, exit codes.
+[[nodiscard]] std::string first_page(const VerbHelp& help, std::size_t width);
+/// "Usage: tetrace compare A.json B.json [OPTION]...".
+[[nodiscard]] std::string usage_of(Verb verb);
 
 /// The program's version, commit, compiler, libraries and licence.
 [[nodiscard]] std::string version_text();

@@ -6,7 +6,6 @@
 #include "bench/terminal/text.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -49,36 +48,6 @@ std::string verbs_taking(const OptionRow& row)
     return names;
 }
 
-/// In single quotes, for a shell.
-std::string in_quotes(std::string_view text)
-{
-    std::string result = "'";
-    for (const char c : text)
-        result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return result + "'";
-}
-
-/// As zsh's _arguments and _describe take it: colons and brackets have a meaning there.
-std::string described(std::string_view text)
-{
-    std::string result;
-    for (const char c : text) {
-        if (c == ':' || c == '[' || c == ']' || c == '\\') result += '\\';
-        result += c;
-    }
-    return result;
-}
-
-std::string_view first_sentence(std::string_view text)
-{
-    return text.substr(0, text.find(". "));
-}
-
-bool is_option(const OptionRow& row)
-{
-    return row.name.starts_with("--");
-}
-
 } // namespace
 
 std::string man_page()
@@ -113,59 +82,6 @@ std::string man_page()
                   ".TP\n.B GOMP_SPINCOUNT, OMP_WAIT_POLICY\nHow OpenMP's threads wait. If neither is set and other "
                   "processes use the processors, bench and reproduce set the first to 2000.\n"
                   ".TP\n.B NO_COLOR\nNo colours.\n";
-}
-
-std::string bash_completion()
-{
-    std::string verbs, options;
-    for (const VerbHelp& verb : verb_helps()) {
-        verbs += fmt::format("{} ", name_of(verb.verb));
-        options += fmt::format("    {}) words='", name_of(verb.verb));
-        for (const OptionRow& row : option_table())
-            if (is_option(row) && takes(verb.verb, row)) options += row.name + ' ';
-        options += "--help' ;;\n";
-    }
-    return fmt::format("# Completes command lines of tetrace in bash.\n"
-                       "_tetrace()\n{{\n"
-                       "    local current=${{COMP_WORDS[COMP_CWORD]}} words=\n"
-                       "    if ((COMP_CWORD == 1)); then\n"
-                       "        words='{}--help --version'\n"
-                       "    elif [[ $current == -* ]]; then\n"
-                       "    case ${{COMP_WORDS[1]}} in\n{}    esac\n"
-                       "    elif [[ ${{COMP_WORDS[1]}} == help ]]; then\n"
-                       "        words='{}{}'\n"
-                       "    fi\n"
-                       "    mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$current\")\n"
-                       "}}\n"
-                       "complete -o default -F _tetrace tetrace\n",
-                       verbs, options, verbs, fmt::join(other_topics, " "));
-}
-
-std::string zsh_completion()
-{
-    std::string verbs, cases;
-    for (const VerbHelp& verb : verb_helps()) {
-        verbs +=
-            fmt::format("        {}\n", in_quotes(fmt::format("{}:{}", name_of(verb.verb), described(verb.summary))));
-        cases += fmt::format("    {})\n        _arguments", name_of(verb.verb));
-        for (const OptionRow& row : option_table()) {
-            if (!is_option(row) || !takes(verb.verb, row)) continue;
-            const std::string value = row.value.empty() ? "" : fmt::format(":{}:_files", described(row.value));
-            cases += " \\\n            " + in_quotes(fmt::format("{}{}[{}]{}", row.list ? "*" : "", row.name,
-                                                                 described(first_sentence(row.help)), value));
-        }
-        cases += " \\\n            '--help[describe the verb]' '*: :_files'\n        ;;\n";
-    }
-    return fmt::format("#compdef tetrace\n# Completes command lines of tetrace in zsh.\n"
-                       "_tetrace()\n{{\n"
-                       "    local -a verbs=(\n{}    )\n"
-                       "    if ((CURRENT == 2)); then\n        _describe verb verbs\n        return\n    fi\n"
-                       "    local verb=$words[2]\n"
-                       "    shift words\n    ((CURRENT--))\n"
-                       "    case $verb in\n{}    esac\n"
-                       "}}\n"
-                       "if [[ $funcstack[1] == _tetrace ]]; then _tetrace; else compdef _tetrace tetrace; fi\n",
-                       verbs, cases);
 }
 
 } // namespace tetrace

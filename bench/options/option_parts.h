@@ -15,6 +15,13 @@ inline constexpr const char* experiments = "Experiments";
     return 1u << static_cast<unsigned>(verb);
 }
 
+/// Of Usual: all that take the option.
+inline constexpr unsigned every_verb = ~0u;
+[[nodiscard]] constexpr Usual usual_for(unsigned verbs, const char* line)
+{
+    return {verbs, line};
+}
+
 inline constexpr unsigned measuring = bit(Verb::bench) | bit(Verb::check);
 inline constexpr unsigned sharing = measuring | bit(Verb::reproduce);
 inline constexpr unsigned tracing = measuring | bit(Verb::render) | bit(Verb::trace);
@@ -25,6 +32,8 @@ inline constexpr unsigned reporting = measuring | bit(Verb::build) | bit(Verb::d
                                       bit(Verb::reproduce) | bit(Verb::inspect) | bit(Verb::trace) |
                                       bit(Verb::compare) | bit(Verb::show) | bit(Verb::merge);
 
+/// Of `reproduce` alone.
+[[nodiscard]] std::vector<OptionRow> reproduce_options();
 /// What becomes of a result.
 [[nodiscard]] std::vector<OptionRow> output_options();
 /// How a run is shared among processes.

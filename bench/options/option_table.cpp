@@ -52,26 +52,6 @@ bool is_projects(const KernelId& kernel)
            });
 }
 
-std::vector<OptionRow> reproduce_options()
-{
-    return {
-        {"Tables", "TABLE", "LIST",
-         "The tables and figures to regenerate: " + join_names(values_of<PaperTarget>()) +
-             ". Default: all except rivals, which is not in the paper and is run by itself.",
-         bit(Verb::reproduce), true, append("reproduce", &Options::targets)},
-        {"Tables", "--builds", "LIST",
-         "Which builds of the scenes: 'ours', a CDT built with the scene options; 'paper', for banana, bunny and "
-         "armadillo, a CDT near the paper's counts, in a domain that contains the cameras; 'rays', tets optimised "
-         "so that rays cross few faces, which decide no claim of the paper. Cubes, lattices and .tet files have "
-         "only ours. Default: all.",
-         bit(Verb::reproduce), true, append("--builds", &Options::paper_builds)},
-        {"Tables", "--searches", "TETSxRAYS",
-         "Exit searches of table5: the number of random tets, and the number of rays through each, a multiple of 8. "
-         "Default: 10000x16384, as in the paper.",
-         bit(Verb::reproduce), false, [](Options& o, const std::string& v) { o.searches = parse_searches(v); }},
-    };
-}
-
 /// "atrium, city, terrain": scenes of the catalogue.
 std::string scene_names(bool (*is_named)(const CatalogueEntry&))
 {
@@ -103,7 +83,7 @@ std::vector<OptionRow> scene_options()
          "Trace this named set of scenes, cameras and rays, whose results stay comparable across versions of "
          "tetrace: " +
              workload_texts() + ". Takes the place of the options of scenes and rays (docs/workloads.md).",
-         bit(Verb::bench) | bit(Verb::check), false, apply_workload},
+         bit(Verb::bench) | bit(Verb::check), false, ApplyOption(apply_workload, workload_names())},
         {"Scenes", "--scene", "SCENE",
          "A name from the catalogue ('tetrace scenes' lists it), a mesh file (PLY, OBJ, OFF, STL, glTF), a pipe of "
          "one, or a .tet file. May be repeated, or a list with commas. 'all' is every available scene of the catalogue "
@@ -112,8 +92,8 @@ std::vector<OptionRow> scene_options()
          "every version of tetrace. NAME@N has about N triangles; the name can be " +
              scene_names([](const CatalogueEntry& scene) { return scene.procedural.has_value(); }) +
              ". lattice:N has 6 N^3 tets, for example 2 GB in layout half32 with N = 138. Default: bunny-1, "
-             "armadillo-1 and atrium-1; cubes, banana and atrium if the first two are missing.",
-         building, true, append_scenes},
+             "armadillo-1 and atrium-1; cubes, banana and atrium-1 if the first two are missing.",
+         building, true, append_scenes(), usual_for(every_verb, "a name of 'tetrace scenes', a mesh file, or all")},
         {"Scenes", "--repair", "",
          "If triangles of a mesh cross, overlap or touch, cut them along their exact intersections; if that never "
          "ends, or TetGen fails, merge near layers, and say by how much faces moved. face_id in results still names "
@@ -131,14 +111,16 @@ std::vector<OptionRow> scene_options()
          "Delaunay tetrahedralization before that, as TetGen makes it. 'cubes', 'lattice' and .tet files have tets "
          "of their own. 'build' accepts a list, and so does 'render', which then shows the steps side by side; "
          "'reproduce' has --builds. Default: rays.",
-         building & ~bit(Verb::reproduce), true, append("--tets", &Options::tets)},
+         building & ~bit(Verb::reproduce), true, append("--tets", &Options::tets),
+         usual_for(bit(Verb::build) | bit(Verb::render), "how the domain is filled: {}")},
         {"Scenes", "--effort", "N",
          "Effort for --tets rays: 0 (TetGen's tets, unchanged, but with the --switches of this kind, so not those "
          "of --tets cdt), 1 (quick), 2, or 3 (vertices are inserted too; the optimiser needs ten times as long, for "
          "at most 1 % fewer steps). Default: " +
              std::to_string(usual_effort) + ".",
          building, false,
-         [](Options& o, const std::string& v) { o.effort = static_cast<int>(parse_count("--effort", v, 0, 3)); }},
+         [](Options& o, const std::string& v) { o.effort = static_cast<int>(parse_count("--effort", v, 0, 3)); },
+         usual_for(bit(Verb::build), "effort of the optimiser: 0 to 3")},
         {experiments, "--divisions", "N",
          "Cut each side of the domain into N x N squares, 1 to 64. 'build' accepts a list. Default: " +
              std::to_string(BuildOptions{}.divisions) + ".",
@@ -147,7 +129,7 @@ std::vector<OptionRow> scene_options()
          "TetGen's switches, as in its manual, or cgal, tets by CGAL 6.1 or later. 'build' accepts a list. Default: " +
              default_build(TetsKind::rays).switches + " for --tets rays, " + default_build(TetsKind::cdt).switches +
              " for --tets cdt.",
-         building, true, append_text(&Options::switches)},
+         building, true, append_text(&Options::switches), usual_for(bit(Verb::build), "TetGen's switches, or cgal")},
         {experiments, "--resolution", "N",
          "Cubes along each axis of the scene 'cubes', 2 to 128. Default: " + std::to_string(BuildOptions{}.resolution) +
              ".",
@@ -155,7 +137,8 @@ std::vector<OptionRow> scene_options()
         {"Scenes", "--time-limit", "TIME",
          "End the scene builder when it has used this much processor time: seconds, or a number followed by s, m or h. "
          "Default: 10m.",
-         building, false, set_seconds("--time-limit", &Options::time_limit_s)},
+         building, false, set_seconds("--time-limit", &Options::time_limit_s),
+         usual_for(bit(Verb::build), "processor time of the builder: 90s, 10m, 2h")},
         {"Scenes", "--optimise-time", "TIME",
          "Stop the optimiser of --tets rays after this processor time, as above, and use the tets reached so far. They "
          "depend "
@@ -165,8 +148,10 @@ std::vector<OptionRow> scene_options()
         {"Scenes", "--memory-limit", "SIZE",
          "Memory that the scene builder may use: bytes, or a number followed by K, M, G or T. "
          "Default: 8G, or what is left of a container's limit.",
-         building, false, set_bytes("--memory-limit", &Options::memory_limit_bytes)},
-        {"Scenes", "--clear", "", "Empty the cache of built scenes.", bit(Verb::scenes), false, set(&Options::clear)},
+         building, false, set_bytes("--memory-limit", &Options::memory_limit_bytes),
+         usual_for(bit(Verb::build), "memory of the builder: 500M, 8G")},
+        {"Scenes", "--clear", "", "Empty the cache of built scenes.", bit(Verb::scenes), false, set(&Options::clear),
+         usual_for(every_verb, "empty the cache of built scenes")},
     };
 }
 
@@ -186,7 +171,8 @@ std::vector<OptionRow> row_options()
              "methods of the BVHs if these are kept. Default for 'reproduce': all; table6 compares maria with BVHs, "
              "and through tets for rays also project on half32 and tet64.",
          reproducing | selecting | bit(Verb::dump), true,
-         append_or_all("--method", &Options::methods, kernels_have(&KernelId::method))},
+         append_or_all("--method", &Options::methods, kernels_have(&KernelId::method)),
+         usual_for(~bit(Verb::render), "exit-face search, for example maria, or all")},
         {"Rows", "--layout", "NAME",
          "Keep the rows of this memory layout: " + names_of(&KernelId::layout, is_of<Structure::cdt>) + " (cdt; " +
              names_of(&KernelId::layout, is_projects) + " only with project), " +
@@ -197,23 +183,28 @@ std::vector<OptionRow> row_options()
              "devices rt is slow: it is a row there only if it is named here, in a filter, or by '--schedule "
              "pipeline'.",
          reproducing | selecting | bit(Verb::dump), true,
-         append("--layout", &Options::layouts, kernels_have(&KernelId::layout))},
+         append("--layout", &Options::layouts, kernels_have(&KernelId::layout)),
+         usual_for(~(bit(Verb::check) | bit(Verb::render) | bit(Verb::reproduce)),
+                   "memory layout, for example tet80 or bvh2")},
         {"Rows", "--backend", "NAME",
          "Keep the rows of this backend ('tetrace devices' lists them). A backend without a usable device has rows "
          "only if it is named here or by --require; they are skipped, with the reason. Default: all with a usable "
          "device and a kernel of the structures kept.",
-         reproducing | bit(Verb::dump), true, append_backend("--backend", &Options::backends)},
+         reproducing | bit(Verb::dump), true, append_backend("--backend", &Options::backends),
+         usual_for(~bit(Verb::render), "API: {}")},
         {"Rows", "--device", "TEXT",
          "Keep the rows of the devices whose name, driver, type, id or number contains TEXT, ignoring case, for "
          "example 'gpu', 'llvmpipe' or 'vulkan:1' (the second device of vulkan). Exit code 3 if a TEXT matches "
          "none. Default: all.",
-         reproducing | bit(Verb::dump), true, append_text(&Options::devices)},
+         reproducing | bit(Verb::dump), true, append_text(&Options::devices),
+         usual_for(bit(Verb::dump), "devices whose name, type or number has this text")},
         {"Rows", "--rays", "KIND",
          "Trace rays of this kind: 'primary', the image's own, made by the kernels. The others are made on the "
          "host, from the primary hits: 'shadow', towards a light, and 'ao', short rays in directions around the "
          "normal (for both, any hit will do); 'diffuse', one bounce; 'random', lines through the domain. Default: "
          "primary.",
-         measuring | bit(Verb::trace), true, append("--rays", &Options::rays)},
+         measuring | bit(Verb::trace), true, append("--rays", &Options::rays),
+         usual_for(~bit(Verb::check), "kind of rays: {}")},
         {"Rows", "--ray-order", "ORDER",
          "Order of the rays of all kinds except primary: 'tiles', in the order of their pixels; 'morton', sorted by "
          "origin and direction; 'shuffled'. Each is a separate row. Default: tiles.",
@@ -221,7 +212,8 @@ std::vector<OptionRow> row_options()
         {"Rows", "--math", "MODE",
          "'exact': no contraction to FMAs, the same bits everywhere; 'fast': the compiler may contract. Embree has "
          "one build, whose rows appear in both modes. Default: exact.",
-         selecting | bit(Verb::dump), true, append("--math", &Options::math)},
+         selecting | bit(Verb::dump), true, append("--math", &Options::math),
+         usual_for(bit(Verb::inspect) | bit(Verb::dump), "contraction to FMAs: {}")},
         {experiments, "--order", "ORDER",
          "Order of the tets in memory: 'hilbert', along a space-filling curve; 'reached', the same, but tets that "
          "no ray from outside reaches are last; 'chains', as 'reached', but each tet is followed by its neighbour "
@@ -235,10 +227,13 @@ std::vector<OptionRow> row_options()
          "on half32 and tet64, and BVHs; 'pipeline', only for rt, Vulkan's ray-tracing pipelines instead of ray "
          "queries. Embree has a schedule of its own. Default: tiles and packets; for rt, pipeline if the driver "
          "lacks ray queries.",
-         selecting, true, append("--schedule", &Options::schedules)},
+         selecting, true, append("--schedule", &Options::schedules),
+         usual_for(bit(Verb::inspect), "how work items get their rays: {}")},
         {"Rows", "--filter", "REGEX",
          "Keep the rows whose names match this regular expression (RE2) anywhere: 'tet96.*openmp'. Default: all.",
-         measuring | bit(Verb::compare), false, [](Options& o, const std::string& v) { o.filter = parse_filter(v); }},
+         measuring | bit(Verb::render) | bit(Verb::compare), false,
+         [](Options& o, const std::string& v) { o.filter = parse_filter(v); },
+         usual_for(every_verb, "rows whose names match, as tet96.*openmp")},
         {"Rows", "--list", "", "Print the names of the selected rows and stop.", measuring, false, set(&Options::list)},
     };
 }
@@ -252,28 +247,35 @@ std::vector<OptionRow> ray_options()
              scene_names([](const CatalogueEntry& scene) { return !scene.views.empty(); }) +
              "; 'smoke', 4 views at 2 radii, in which a closed object fills a sixth of the "
              "image; 'orbit', 1,282 views on a sphere of 2 radii; 'flight', 1,282 views from 1.2 to 2.9 radii; or a "
-             ".json file with your own cameras (docs/cameras.md). Default: frame.",
-         tracing | bit(Verb::build), false, set_cameras},
+             ".json file with your own cameras (docs/cameras.md). Default: frame; for 'reproduce', except for rivals, "
+             "flight.",
+         with_rays, false, set_cameras(),
+         usual_for(~(bit(Verb::check) | bit(Verb::reproduce)), "views: {}, or a .json file")},
         {"Rays", "--views", "LIST",
          "Views of the camera set, numbered from 0: numbers, ranges and strides, for example 0,3,10-20 or "
          "0-1281:64. Default: all; for 'bench' without --scene and with frame, 0 and 1.",
          with_rays & ~bit(Verb::trace), true,
-         [](Options& o, const std::string& v) { o.views += (o.views.empty() ? "" : ",") + v; }},
+         [](Options& o, const std::string& v) { o.views += (o.views.empty() ? "" : ",") + v; },
+         usual_for(bit(Verb::render) | bit(Verb::reproduce), "views of the set: 0,3,10-20 or 0-1281:64")},
         {"Rays", "--size", "WxH",
          "Image size in pixels, one ray each; N means NxN. Default: 1024x1024; for 'check' and 'trace' 256x256, for "
          "'reproduce rivals' 512x512.",
          with_rays, false,
-         [](Options& o, const std::string& v) { std::tie(o.width, o.height) = parse_size("--size", v); }},
+         [](Options& o, const std::string& v) { std::tie(o.width, o.height) = parse_size("--size", v); },
+         usual_for(every_verb, "pixels of the image: 640x480, or 512 for 512x512")},
         {"Rays", "--threads", "N",
          "Host threads; 0 means OMP_NUM_THREADS if it is set, or else all CPUs that the process may use; in a "
          "container with a CPU quota, the quota rounded down. Scenes are always built with 0. Default: 0.",
          with_rays, false, set_count("--threads", &Options::threads, 0, 4096)},
         {experiments, "--tile", "WxH", "Pixels per work-group: 8x4 or 8x8. Default: depends on the type of the device.",
-         reproducing, false, [](Options& o, const std::string& v) { o.tile_height = parse_tile_height(v); }},
+         reproducing, false,
+         ApplyOption([](Options& o, const std::string& v) { o.tile_height = parse_tile_height(v); }, tile_names())},
         {experiments, "--packet-lanes", "N",
          "Rays per packet, for rows of schedule 'packets': 4, 8 or 16. If the CPU or the build does not support "
          "that width, those rows are unsupported. Default: the widest available.",
-         tracing, false, [](Options& o, const std::string& v) { o.packet_lanes = parse_packet_lanes(v); }},
+         tracing, false,
+         ApplyOption([](Options& o, const std::string& v) { o.packet_lanes = parse_packet_lanes(v); },
+                     packet_lane_names())},
         {experiments, "--buffer-limit", "SIZE",
          "Maximum size of a buffer on every device: bytes, or a number followed by K, M, G or T. The array of tets "
          "is bound in parts that fit; if that is not enough, the row is unsupported. Default: the limit that each "
@@ -289,13 +291,13 @@ std::vector<OptionRow> driver_options()
         {"Drivers", "--isolate", "KIND",
          "Where the drivers of opencl, vulkan and cuda run: 'device', a separate process for each device, so that a "
          "driver that crashes or hangs ends only its row; 'none', tetrace's process, for debuggers. Default: device.",
-         with_drivers, false,
-         [](Options& o, const std::string& v) { o.isolation = choose<Isolation>("--isolate", v); }},
+         with_drivers, false, set_choice<Isolation>("--isolate", &Options::isolation)},
         {"Drivers", "--driver-limit", "TIME",
          "End a driver's process if it does not answer a call within this time: seconds, or a number followed by s, "
          "m or h. Needs --isolate device. Default: 5 minutes, plus a millisecond per ray or a second per megabyte "
          "of data.",
-         with_drivers, false, set_seconds("--driver-limit", &Options::driver_limit_s)},
+         with_drivers, false, set_seconds("--driver-limit", &Options::driver_limit_s),
+         usual_for(bit(Verb::devices), "time that a driver has for a call: 30s, 5m")},
     };
 }
 
@@ -332,14 +334,17 @@ std::vector<OptionRow> judging_options()
          "devices and exit searches do not count. If not all samples fit, 'bench' takes fewer, but at least 5 (or "
          "--samples, if less), since fewer give no interval. The slowest rows are skipped until the others fit, or "
          "whole scenes, the last one first; 'reproduce' shares the time evenly by the scenes that are left. The "
-         "result states the budget that the skipped rows need. One row is always measured, unless it needs four "
-         "budgets; otherwise a run exceeds the budget by at most a quarter. --benchmark_repetitions lifts the limit. "
+         "result states the budget that the skipped rows need. One row is always measured, however small TIME is; "
+         "otherwise a run exceeds the budget by at most a quarter. --benchmark_repetitions lifts the limit. "
          "Default: 4m; of 'check' and 'reproduce' no limit, but of rivals 10m.",
-         sharing, false, set_seconds("--budget", &Options::budget_s)},
+         sharing, false, set_seconds("--budget", &Options::budget_s),
+         usual_for(bit(Verb::bench) | bit(Verb::reproduce), "time for verifying and timing: 30s, 10m")},
         {"Judging", "--require", "BACKEND",
-         "Fail with exit code 3 unless this backend has a usable device and, for 'check', has selected rows of "
+         "Fail with exit code 3 unless this backend has a usable device and, except for 'devices', has selected rows "
+         "of "
          "which none is skipped or unsupported; 'devices' exits with 1 if a self-test of that backend fails.",
-         bit(Verb::check) | bit(Verb::devices), true, append_backend("--require", &Options::required)},
+         sharing | bit(Verb::devices), true, append_backend("--require", &Options::required),
+         usual_for(bit(Verb::check) | bit(Verb::devices), "fail unless this API has a device and results")},
         {"Judging", "--allow-flawed", "",
          "Exit with 0 even if maria, project or one of our BVHs has wrong rays on a device whose t, u or v differ from "
          "openmp's. Lost rays there, and rows that differ from openmp, still fail. A row with openmp's bits never "
@@ -348,23 +353,27 @@ std::vector<OptionRow> judging_options()
         {"Judging", "--defects", "",
          "Run the reduced kernels of known compiler defects instead of rows; no scene is needed. Exits with 1 if a "
          "driver shows one (docs/debugging.md).",
-         bit(Verb::check), false, set(&Options::defects)},
+         bit(Verb::check), false, set(&Options::defects),
+         usual_for(every_verb, "known compiler defects instead of rows")},
         {"Judging", "--tolerance", "PERCENT",
          "The difference in time that does not matter, in percent, 0 to 100. A row that is SLOWER by more is a "
          "regression; a row whose whole interval is within it is the SAME. Default: 3.",
          bit(Verb::compare), false,
-         [](Options& o, const std::string& v) { o.tolerance = parse_percent("--tolerance", v) / 100; }},
+         [](Options& o, const std::string& v) { o.tolerance = parse_percent("--tolerance", v) / 100; },
+         usual_for(every_verb, "difference in time that does not matter")},
         {"Judging", "--allow-missing", "",
          "Exit with 0 even if rows that A timed are missing, skipped or unsupported in B. Failed rows still count.",
-         bit(Verb::compare), false, set(&Options::allow_missing)},
+         bit(Verb::compare), false, set(&Options::allow_missing),
+         usual_for(every_verb, "rows that B lacks do not fail")},
         {"Pictures", "--picture", "KIND",
          "'normals', the surface shaded by its normals, or 'steps', the steps of each ray in false colour with a scale "
          "bar. Default: normals.",
-         bit(Verb::render), true, append("--picture", &Options::pictures)},
+         bit(Verb::render), true, append("--picture", &Options::pictures), usual_for(every_verb, "what is shown: {}")},
         {"Pictures", "--differences", "FOLDER",
          "Write a picture of each view in which a row differs from openmp, with the differing pixels marked: PNG, or "
          "PPM if OpenImageIO is missing. Default: none.",
-         bit(Verb::check), false, set_path("--differences", &Options::picture_folder)},
+         bit(Verb::check), false, set_path("--differences", &Options::picture_folder),
+         usual_for(every_verb, "pictures of views in which a row differs")},
     };
 }
 
@@ -374,7 +383,8 @@ std::vector<OptionRow> report_options()
         {"Pictures", "--image", "FILE",
          "Add this picture to the page: a PNG or PPM file, as 'tetrace render' writes it. May be repeated, or a "
          "list with commas. Default: only the pictures named by figures in the results.",
-         bit(Verb::report), true, [](Options& o, const std::string& v) { o.report_pictures.emplace_back(v); }},
+         bit(Verb::report), true, append_path("--image", &Options::report_pictures),
+         usual_for(every_verb, "add this picture, PNG or PPM, to the page")},
         {"Output", "--charts", "FOLDER",
          "Also write each chart of the page into this folder, as an SVG file that needs nothing else, for papers and "
          "slides; its name says what it shows. Default: none.",

@@ -44,26 +44,6 @@ bool read_range(std::string_view text, ViewRange& range)
     return read_whole(text.substr(dash + 1), range.last) && range.first <= range.last;
 }
 
-/// The least number of letters left out, added, or replaced, and of neighbours exchanged, that turns one text into the
-/// other: the restricted distance of Damerau, "A technique for computer detection and correction of spelling errors"
-/// (1964).
-std::size_t slips_between(std::string_view a, std::string_view b)
-{
-    std::vector<std::vector<std::size_t>> slips(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-    for (std::size_t i = 0; i <= a.size(); ++i)
-        for (std::size_t j = 0; j <= b.size(); ++j) {
-            if (i == 0 || j == 0) {
-                slips[i][j] = i + j;
-                continue;
-            }
-            const std::size_t replaced = slips[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
-            slips[i][j] = std::min({replaced, slips[i - 1][j] + 1, slips[i][j - 1] + 1});
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-                slips[i][j] = std::min(slips[i][j], slips[i - 2][j - 2] + 1);
-        }
-    return slips[a.size()][b.size()];
-}
-
 } // namespace
 
 std::string join_alternatives(const std::vector<std::string>& names)
@@ -76,21 +56,6 @@ std::string join_alternatives(const std::vector<std::string>& names)
     return text;
 }
 
-std::string did_you_mean(const std::string& text, const std::vector<std::string>& names)
-{
-    std::size_t nearest = std::min<std::size_t>(2, text.size() / 3) + 1;
-    std::string found;
-    for (const std::string& name : names) {
-        const auto [shorter, longer] = std::minmax({text.size(), name.size()});
-        if (longer - shorter >= nearest) continue; // at least this many slips; a text may be as long as a command line
-        if (const std::size_t slips = slips_between(text, name); slips < nearest) {
-            nearest = slips;
-            found = name;
-        }
-    }
-    return found.empty() ? found : fmt::format("; did you mean {}?", found);
-}
-
 std::vector<std::string> split_list(const std::string& option, const std::string& text)
 {
     std::vector<std::string> parts(1);
@@ -100,6 +65,7 @@ std::vector<std::string> split_list(const std::string& option, const std::string
         else
             parts.back() += c;
     }
+    if (text.empty()) throw Error(ErrorKind::usage, option + ": the value is empty");
     for (const std::string& part : parts)
         if (part.empty())
             throw Error(ErrorKind::usage,
@@ -127,6 +93,15 @@ std::vector<std::string> split_scenes(const std::string& option, const std::stri
 void reject_value(const std::string& option, const std::string& value, const std::string& accepted)
 {
     throw Error(ErrorKind::usage, fmt::format("{}: '{}' is not accepted; accepted: {}", option, value, accepted));
+}
+
+void reject_name(const std::string& option, const std::string& value, const std::vector<std::string>& names,
+                 const std::string& more)
+{
+    const std::string guess = did_you_mean(value, names);
+    throw Error(ErrorKind::usage,
+                fmt::format("{}: '{}' is not accepted{}: {}{}", option, value,
+                            guess.empty() ? "; accepted" : guess + " Accepted", join_alternatives(names), more));
 }
 
 std::uint64_t parse_count(const std::string& option, const std::string& text, std::uint64_t low, std::uint64_t high)
@@ -209,20 +184,31 @@ std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& option, co
     return {width, height};
 }
 
+std::vector<std::string> tile_names()
+{
+    return {"8x4", "8x8"};
+}
+
 unsigned parse_tile_height(const std::string& text)
 {
-    if (text != "8x4" && text != "8x8") reject_value("--tile", text, "8x4 or 8x8");
-    return text == "8x4" ? 4 : 8;
+    const auto names = tile_names();
+    if (std::ranges::find(names, text) == names.end()) reject_name("--tile", text, names);
+    return text == names.front() ? 4 : 8;
+}
+
+std::vector<std::string> packet_lane_names()
+{
+    std::vector<std::string> names;
+    for (const unsigned lanes : packet_widths)
+        names.push_back(std::to_string(lanes));
+    return names;
 }
 
 unsigned parse_packet_lanes(const std::string& text)
 {
-    std::vector<std::string> accepted;
-    for (const unsigned lanes : packet_widths) {
-        accepted.push_back(std::to_string(lanes));
-        if (text == accepted.back()) return lanes;
-    }
-    reject_value("--packet-lanes", text, join_alternatives(accepted));
+    for (const unsigned lanes : packet_widths)
+        if (text == std::to_string(lanes)) return lanes;
+    reject_name("--packet-lanes", text, packet_lane_names());
 }
 
 std::string parse_filter(const std::string& text)
@@ -262,25 +248,26 @@ std::string text_of(const Shard& shard)
 Shard parse_shard(const std::string& text)
 {
     const std::size_t slash = text.find('/');
-    if (slash == std::string::npos) reject_value("--shard", text, "K/N, the K-th of N shards: 1/4 to 4/4");
     Shard shard;
-    shard.of = static_cast<unsigned>(parse_count("--shard", text.substr(slash + 1), 1, max_shards));
-    shard.number = static_cast<unsigned>(parse_count("--shard", text.substr(0, slash), 1, shard.of));
+    const bool read = slash != std::string::npos && read_whole(std::string_view(text).substr(0, slash), shard.number) &&
+                      read_whole(std::string_view(text).substr(slash + 1), shard.of);
+    if (!read || shard.number < 1 || shard.number > shard.of || shard.of > max_shards)
+        reject_value("--shard", text,
+                     fmt::format("K/N, the K-th of N shards, 1/4 to 4/4 for example; N is at most {}", max_shards));
     return shard;
 }
 
-std::vector<std::uint32_t> parse_views(const std::string& text, std::size_t view_count)
+std::vector<std::uint32_t> parse_views(const std::string& text, std::size_t view_count, const std::string& option)
 {
     std::set<std::uint32_t> numbers;
     const std::string all = fmt::format("0-{}", view_count - 1);
-    for (const std::string& part : split_list("--views", text.empty() ? all : text)) {
+    for (const std::string& part : split_list(option, text.empty() ? all : text)) {
         ViewRange range;
         if (!read_range(part, range))
-            reject_value("--views", part, "numbers (3), ranges (10-20) and strides (0-1281:64), commas between");
+            reject_value(option, part, "numbers (3), ranges (10-20) and strides (0-1281:64), commas between");
         if (range.last >= view_count)
-            throw Error(ErrorKind::usage, fmt::format("--views: view {} does not exist; this camera set has views 0 "
-                                                      "to {}",
-                                                      range.last, view_count - 1));
+            throw Error(ErrorKind::usage, fmt::format("{}: view {} does not exist; this camera set has views 0 to {}",
+                                                      option, range.last, view_count - 1));
         for (std::uint64_t number = range.first; number <= range.last; number += range.stride)
             numbers.insert(static_cast<std::uint32_t>(number));
     }

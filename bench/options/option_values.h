@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bench/options/options.h"
+#include "core/base/did_you_mean.h"
 #include "core/base/error.h"
 
 #include <cstdint>
@@ -14,10 +15,6 @@ namespace tetrace {
 /// "a, b or c".
 [[nodiscard]] std::string join_alternatives(const std::vector<std::string>& names);
 
-/// "; did you mean --samples?": the name that one or two slips of the hand turn into the text. Empty if none is so
-/// near.
-[[nodiscard]] std::string did_you_mean(const std::string& text, const std::vector<std::string>& names);
-
 /// Splits at commas. Throws Error{usage} naming the option where a part is empty.
 [[nodiscard]] std::vector<std::string> split_list(const std::string& option, const std::string& text);
 /// The same of scenes: what is the name of a file stays whole, its commas included; the longest such name counts.
@@ -25,15 +22,23 @@ namespace tetrace {
 
 /// Throws Error{usage}: the value is not accepted; lists the accepted ones.
 [[noreturn]] void reject_value(const std::string& option, const std::string& value, const std::string& accepted);
+/// The same, with a guess which of the names was meant. more: what else is accepted, such as " or a file".
+[[noreturn]] void reject_name(const std::string& option, const std::string& value,
+                              const std::vector<std::string>& names, const std::string& more = {});
 
-/// "a, b or c": the names of values.
 template <class T>
-[[nodiscard]] std::string join_names(const std::vector<T>& values)
+[[nodiscard]] std::vector<std::string> all_names(const std::vector<T>& values = values_of<T>())
 {
     std::vector<std::string> names;
     for (const T& value : values)
         names.emplace_back(name_of(value));
-    return join_alternatives(names);
+    return names;
+}
+/// "a, b or c": the names of values.
+template <class T>
+[[nodiscard]] std::string join_names(const std::vector<T>& values)
+{
+    return join_alternatives(all_names(values));
 }
 
 /// The value with that name. Throws Error{usage} listing the names where there is none.
@@ -43,7 +48,7 @@ template <class T>
 {
     for (const T& value : values)
         if (name_of(value) == text) return value;
-    reject_value(option, text, join_names(values));
+    reject_name(option, text, all_names(values));
 }
 
 /// A whole number in [low, high]. Throws Error{usage} naming the bounds.
@@ -67,9 +72,11 @@ template <class T>
 
 /// "8x4" or "8x8": the height. Throws Error{usage}.
 [[nodiscard]] unsigned parse_tile_height(const std::string& text);
+[[nodiscard]] std::vector<std::string> tile_names();
 
 /// One of packet_widths. Throws Error{usage}.
 [[nodiscard]] unsigned parse_packet_lanes(const std::string& text);
+[[nodiscard]] std::vector<std::string> packet_lane_names();
 
 /// The expression, unchanged. Throws Error{usage} if it is not a regular expression (name_filter.h).
 [[nodiscard]] std::string parse_filter(const std::string& text);
@@ -82,6 +89,7 @@ template <class T>
 
 /// View numbers: numbers separated by commas, ranges "10-20" and strides "0-1281:64"; empty is all. Ascending, each
 /// once. Throws Error{usage} naming the part that cannot be read, or the number that is not below view_count.
-[[nodiscard]] std::vector<std::uint32_t> parse_views(const std::string& text, std::size_t view_count);
+[[nodiscard]] std::vector<std::uint32_t> parse_views(const std::string& text, std::size_t view_count,
+                                                     const std::string& option = "--views");
 
 } // namespace tetrace

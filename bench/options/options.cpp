@@ -3,6 +3,7 @@
 #include "bench/options/help.h"
 #include "bench/options/option_table.h"
 #include "bench/options/option_values.h"
+#include "bench/options/rejected_options.h"
 
 #include "core/base/control_groups.h"
 #include "scenes/pinned.h"
@@ -45,54 +46,6 @@ std::vector<std::string> without_benchmark_flags(const std::vector<std::string>&
         (options.verb == Verb::bench && is_google_benchmark_flag(argument) ? options.benchmark_flags : ours)
             .push_back(argument);
     return ours;
-}
-
-std::vector<std::string> accepted_options(Verb verb)
-{
-    std::vector<std::string> names;
-    for (const OptionRow& row : option_table())
-        if (takes(verb, row)) names.push_back(row.name);
-    names.emplace_back("--help");
-    if (verb == Verb::bench) names.emplace_back("--benchmark_* (Google Benchmark's own)");
-    return names;
-}
-
-/// Options that had a name which has another meaning for other verbs.
-struct Renamed {
-    Verb verb;
-    std::string_view before, now;
-};
-constexpr Renamed renamed[] = {{Verb::check, "--picture", "--differences"},
-                               {Verb::report, "--picture", "--image"},
-                               {Verb::inspect, "--require", "--require-target"}};
-
-/// What CLI11 could not place: the first unknown option, with what it may have been meant to be, or else the first
-/// word.
-std::string not_accepted(Verb verb, const std::vector<std::string>& arguments, const std::vector<std::string>& unplaced)
-{
-    const auto accepted = accepted_options(verb);
-    for (const std::string& argument : arguments) {
-        const std::string name = argument.substr(0, argument.find('='));
-        if (name.size() < 2 || !name.starts_with('-') || std::ranges::find(unplaced, argument) == unplaced.end())
-            continue;
-        for (const Renamed& option : renamed)
-            if (option.verb == verb && option.before == name)
-                return fmt::format("{} of {} is now {}", name, name_of(verb), option.now);
-        return fmt::format("'{}' is not an option{}", name, did_you_mean(name, accepted));
-    }
-    const auto first = std::ranges::find_if(arguments, [&](const std::string& argument) {
-        return std::ranges::find(unplaced, argument) != unplaced.end();
-    });
-    const std::string word = first != arguments.end() ? *first : "";
-    const bool takes_scenes = std::ranges::find(accepted, "--scene") != accepted.end();
-    return fmt::format("'{}' is not expected{}", word,
-                       takes_scenes && !word.starts_with('-') ? fmt::format("; a scene is '--scene {}'", word) : "");
-}
-
-[[noreturn]] void reject_command_line(Verb verb, const std::string& reason)
-{
-    throw Error(ErrorKind::usage, fmt::format("{0}: {1}\naccepted options: {2}\n'tetrace {0} --help' describes them",
-                                              name_of(verb), reason, join_alternatives(accepted_options(verb))));
 }
 
 std::string counted_files(std::size_t count)
@@ -162,7 +115,8 @@ void check_single(const Options& options, const char* name, std::size_t count)
 /// `trace` follows one ray.
 void check_ray(const Options& options)
 {
-    if (options.scenes.size() != 1)
+    if (options.scenes.empty()) throw Error(ErrorKind::usage, "trace: --scene SCENE is missing: which scene?");
+    if (options.scenes.size() > 1)
         throw Error(ErrorKind::usage,
                     fmt::format("trace: --scene accepts one scene; {} are given", options.scenes.size()));
     if (!options.pixel) throw Error(ErrorKind::usage, "trace: --pixel X,Y is missing: which ray?");
@@ -274,8 +228,19 @@ void choose_default_views(Options& options)
 constexpr std::string_view own_options[] = {"--shard", "--wait",        "--out",    "--format",  "--resume", "--label",
                                             "--junit", "--differences", "--device", "--threads", "--columns"};
 
+Options help_of(const std::string& topic, bool whole = false)
+{
+    Options options;
+    options.help_topic = topic;
+    options.whole_help = whole;
+    return options;
+}
+
 Options parse_verb(Verb verb, const std::vector<std::string>& arguments)
 {
+    const auto has = [&](const char* word) { return std::ranges::find(arguments, word) != arguments.end(); };
+    if (has("--help=all")) return help_of(std::string(name_of(verb)), true);
+    if (has("--version") || has("-V")) return {.verb = Verb::version};
     Options options = defaults_of(verb);
     CLI::App app;
     app.set_help_flag("--help,-h");
@@ -288,11 +253,11 @@ Options parse_verb(Verb verb, const std::vector<std::string>& arguments)
     try {
         app.parse(std::move(ours));
     } catch (const CLI::CallForHelp&) {
-        options.verb = Verb::help;
-        options.help_topic = name_of(verb);
-        return options;
+        return help_of(std::string(name_of(verb)));
     } catch (const CLI::ExtrasError&) {
         reject_command_line(verb, not_accepted(verb, arguments, app.remaining()));
+    } catch (const CLI::ArgumentMismatch& problem) {
+        reject_command_line(verb, without_value(problem.what()));
     } catch (const CLI::ParseError& problem) {
         reject_command_line(verb, problem.what());
     }
@@ -312,13 +277,18 @@ Options parse_verb(Verb verb, const std::vector<std::string>& arguments)
 
 Options parse_help(const std::vector<std::string>& topics)
 {
-    Options options;
-    if (topics.empty()) return options;
-    if (std::ranges::find(other_topics, topics.front()) == std::end(other_topics))
-        static_cast<void>(choose("help", topics.front(), all_verbs()));
-    if (topics.size() > 1) throw Error(ErrorKind::usage, "help: one verb at a time");
-    options.help_topic = topics.front();
-    return options;
+    if (topics.empty()) return {};
+    std::vector<std::string> names = names_of_verbs();
+    const std::size_t verbs = names.size();
+    names.insert(names.end(), std::begin(other_topics), std::end(other_topics));
+    const std::string& topic = topics.front();
+    const auto found = std::ranges::find(names, topic);
+    if (found == names.end()) reject_name("help", topic, names);
+    const bool is_verb = found - names.begin() < static_cast<std::ptrdiff_t>(verbs);
+    if (topics.size() == 1) return help_of(topic);
+    if (topics.size() == 2 && topics.back() == "all" && is_verb) return help_of(topic, true);
+    throw Error(ErrorKind::usage, fmt::format("help: '{}' is not expected; usage: tetrace help [VERB [all] | TOPIC]",
+                                              is_verb && topics[1] == "all" ? topics[2] : topics[1]));
 }
 
 } // namespace
@@ -367,9 +337,7 @@ Options parse_options(const std::vector<std::string>& arguments)
                 std::ranges::replace(rest, std::string("-o"), std::string("--out"));
             return parse_verb(verb, rest);
         }
-    throw Error(ErrorKind::usage, fmt::format("'{}' is not a verb{}; accepted: {}, --help or --version\n"
-                                              "'tetrace help' describes them",
-                                              first, did_you_mean(first, names_of_verbs()), join_names(all_verbs())));
+    reject_verb(first, names_of_verbs());
 }
 
 namespace {
@@ -426,7 +394,9 @@ Shard shard_of(const Options& options)
 
 std::vector<std::uint32_t> selected_views(const Options& options)
 {
-    return dealt(parse_views(options.views, camera_set_size(options)), shard_of(options));
+    return dealt(
+        parse_views(options.views, camera_set_size(options), options.verb == Verb::trace ? "--view" : "--views"),
+        shard_of(options));
 }
 
 } // namespace tetrace

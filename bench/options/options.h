@@ -90,7 +90,8 @@ struct ImagePixel {
 /// A checked command line. Empty lists select by default (see rows.h); all other members hold their default.
 struct Options {
     Verb verb = Verb::help;
-    std::string help_topic; ///< verb that help is about; empty: the program
+    std::string help_topic;  ///< verb that help is about; empty: the program
+    bool whole_help = false; ///< of a verb, in place of its first page
 
     std::optional<Shard> shard;         ///< empty: the whole run, or the rank's share under a launcher
     std::vector<std::string> words;     ///< the command line, the verb first

@@ -24,18 +24,21 @@ std::vector<OptionRow> output_options()
          "Format of the result: table, json, csv or markdown. With --out, all except table are written to that "
          "file; otherwise they replace the table on standard output. Markdown of bench, check, compare, reproduce "
          "and show is what the terminal prints, ready to post. Default: table.",
-         reporting, false, [](Options& o, const std::string& v) { o.format = choose<Format>("--format", v); }},
+         reporting, false, set_choice<Format>("--format", &Options::format),
+         usual_for(~(tracing | bit(Verb::reproduce)), "{}")},
         {"Output", "--out", "PATH",
          "Write to the file PATH: the result, the picture of 'render', the page of 'report'. For 'dump' it is the "
          "folder of the files, and is required. Without --format, its extension sets a result's format: .json, .csv, "
          ".md, or .txt for the table; the table still goes to standard output. '-' means standard output instead of a "
          "file. -o is short for it. Default: none; of 'render' the current folder, of 'report' report.html.",
-         reporting | bit(Verb::render) | bit(Verb::report) | bit(Verb::dump), false, set_out},
+         reporting | bit(Verb::render) | bit(Verb::report) | bit(Verb::dump), false, set_out(),
+         usual_for(every_verb, "where to write; -o is short for it")},
         {"Output", "--columns", "LIST",
          "Print only these columns, after the first one, in the tables that have them, named as in CSV and JSON: "
          "mrays_per_s,spread. An unknown name prints the list of valid ones. Default: all, or on a terminal the "
          "most important ones that fit.",
-         measuring | bit(Verb::compare) | bit(Verb::show), true, append_text(&Options::columns)},
+         measuring | bit(Verb::compare) | bit(Verb::show) | bit(Verb::merge), true, append_text(&Options::columns),
+         usual_for(~measuring, "only these columns: mrays_per_s,spread")},
         {"Output", "--brief", "",
          "Print one screen: the machine, the five most telling rows, the score, what is compared, and whether to trust "
          "it. Files have everything.",
@@ -47,15 +50,17 @@ std::vector<OptionRow> output_options()
          [](Options& o, const std::string& v) { o.label = parse_label(v); }},
         {"Output", "--anonymous", "",
          "Leave out of the result what identifies the machine: the host's name, and the folders of files.", reporting,
-         false, set(&Options::anonymous)},
+         false, set(&Options::anonymous),
+         usual_for(~(building | bit(Verb::inspect)), "no host name and no folders in the result")},
         {"Output", "--resume", "",
          "Continue the run whose journal is FILE.journal, for FILE of --out: views, samples and batches of searches in "
          "it are not repeated. If the journal does not exist, start one.",
-         bit(Verb::bench) | bit(Verb::check) | bit(Verb::reproduce), false, set(&Options::resume)},
+         sharing, false, set(&Options::resume)},
         {"Output", "--junit", "FILE",
          "Also write the result to FILE as JUnit XML, one test case per row; '-' means standard output, instead of "
-         "the table. 'merge' accepts it for shards of 'check'. Default: none.",
-         bit(Verb::check) | bit(Verb::merge), false, set_path("--junit", &Options::junit)},
+         "the table. 'merge' accepts it for shards of 'bench' and 'check'. Default: none.",
+         measuring | bit(Verb::merge), false, set_path("--junit", &Options::junit),
+         usual_for(bit(Verb::check) | bit(Verb::merge), "also as JUnit XML, a test case per row")},
     };
 }
 

@@ -2,9 +2,6 @@
 
 #include "bench/options/option_values.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 
 namespace tetrace {
@@ -23,15 +20,18 @@ const std::vector<Workload>& workloads()
     return all;
 }
 
+std::vector<std::string> workload_names()
+{
+    std::vector<std::string> names;
+    for (const Workload& workload : workloads())
+        names.emplace_back(workload.name);
+    return names;
+}
+
 void apply_workload(Options& options, const std::string& name)
 {
     const auto found = std::ranges::find(workloads(), name, &Workload::name);
-    if (found == workloads().end()) {
-        std::vector<std::string_view> names;
-        for (const Workload& workload : workloads())
-            names.push_back(workload.name);
-        reject_value("--workload", name, fmt::format("{}", fmt::join(names, ", ")));
-    }
+    if (found == workloads().end()) reject_name("--workload", name, workload_names());
     options.scenes = found->scenes;
     options.views = found->views;
     options.width = options.height = found->size;

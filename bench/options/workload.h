@@ -21,6 +21,8 @@ struct Workload {
 /// All of them, the one that `bench` runs by default first.
 [[nodiscard]] const std::vector<Workload>& workloads();
 
+[[nodiscard]] std::vector<std::string> workload_names();
+
 /// Makes the options ask for the workload of that name. Throws Error{usage} with the accepted names.
 void apply_workload(Options& options, const std::string& name);
 

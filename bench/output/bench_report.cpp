@@ -1,5 +1,6 @@
 #include "bench/output/bench_report.h"
 
+#include "bench/measuring/budget.h"
 #include "bench/measuring/figures.h"
 #include "bench/output/brief.h"
 #include "bench/output/device_json.h"
@@ -122,6 +123,16 @@ const char* const time_columns =
     "launched alone; fixed: cost of each launch, by the line through launches of one view and of all, if it is "
     "above the noise. Medians of the samples, except for download.";
 
+/// The rows that an interrupt left without a rate.
+std::string untimed_sentence(const std::vector<RowRecord>& rows)
+{
+    std::string names;
+    for (const RowRecord& row : rows)
+        if (has_answers(row) && row.samples_s.empty())
+            append_item(names, "; ", fmt::format("{}, {}", row.key.scene, row_label(row.key)));
+    return names.empty() ? names : fmt::format(" With fewer than 5 samples, so without a rate: {}.", names);
+}
+
 Sheet closing_lines(const BenchResult& result)
 {
     Sheet sheet;
@@ -131,7 +142,7 @@ Sheet closing_lines(const BenchResult& result)
         sheet.labelled("Rates", fmt::format(fmt::runtime(rate_columns), interval_meaning(result.measurement.runs)));
         sheet.labelled("Times", time_columns);
     }
-    if (result.interrupted) sheet.labelled("Stopped", interrupted_sentence);
+    if (result.interrupted) sheet.labelled("Stopped", interrupted_sentence + untimed_sentence(result.rows));
     for (const auto& sentences : {result.missing_devices, result.missing_scenes})
         for (const std::string& sentence : sentences)
             sheet.labelled("Missing", sentence);
@@ -225,11 +236,22 @@ std::string verdict_sentence(const std::vector<RowRecord>& rows)
                               with_commas(sum.lost));
 }
 
+namespace {
+
+/// What reasons have in common that are told as one: of rows that --budget skips, all but the row's own time.
+std::string common_part(const std::string& reason)
+{
+    const std::size_t at = reason.find(with_budget);
+    return at == std::string::npos ? reason : reason.substr(at);
+}
+
+} // namespace
+
 Sheet failure_lines(const std::vector<RowRecord>& rows)
 {
     struct Failure {
         const RowRecord* first;
-        std::string what;
+        std::string what, common;
         std::size_t count = 0;
     };
     std::vector<Failure> failures;
@@ -237,17 +259,19 @@ Sheet failure_lines(const std::vector<RowRecord>& rows)
         const Status status = status_of(row);
         if (status == Status::ok || status == Status::flawed) continue;
         const std::string what = failure_text(row, status);
+        const std::string common = common_part(what);
         const auto same = std::ranges::find_if(failures, [&](const Failure& failure) {
-            return failure.what == what && failure.first->key.scene == row.key.scene;
+            const bool is_same_scene = failure.first->key.scene == row.key.scene;
+            return failure.common == common && (common != what || is_same_scene);
         });
-        ++(same == failures.end() ? failures.emplace_back(Failure{&row, what}) : *same).count;
+        ++(same == failures.end() ? failures.emplace_back(Failure{&row, what, common}) : *same).count;
     }
     Sheet sheet;
-    for (const Failure& failure : failures)
-        sheet.line(failure.count == 1
-                       ? fmt::format("{}: {}", row_name(failure.first->key), failure.what)
-                       : fmt::format("{} rows of {}, such as {}: {}", failure.count, failure.first->key.scene,
-                                     row_name(failure.first->key), failure.what));
+    for (const auto& [first, what, common, count] : failures) {
+        const std::string of_scene = common == what ? " of " + first->key.scene : "";
+        sheet.line(count == 1 ? fmt::format("{}: {}", row_name(first->key), what)
+                              : fmt::format("{} rows{}, such as {}: {}", count, of_scene, row_name(first->key), what));
+    }
     if (!failures.empty()) sheet.gap();
     return sheet;
 }
@@ -263,8 +287,10 @@ Sheet bench_sheet(const BenchResult& result)
         sheet.line(steps_sentences(name, result.rows));
         sheet.prose(visits_sentences(name, result.rows));
         sheet.gap();
-        sheet.table(rate_table(name, result));
-        sheet.gap();
+        if (const Table table = rate_table(name, result); !table.rows().empty()) {
+            sheet.table(table);
+            sheet.gap();
+        }
     }
     if (const Workload* const workload = workload_of(result.scenes, result.rows); workload && is_timed(result)) {
         sheet.heading(fmt::format("scores: geometric means over {}", workload->name));

@@ -46,7 +46,8 @@ struct BenchResult {
 /// The oracle's findings over all rows, in one sentence.
 [[nodiscard]] std::string verdict_sentence(const std::vector<RowRecord>& rows);
 
-/// Rows without an answer and their reasons: a line for all rows of a scene that have the same one, and an empty line.
+/// Rows without an answer and their reasons, and an empty line: a line for all rows of a scene that have the same one,
+/// and one for all that --budget skipped.
 [[nodiscard]] Sheet failure_lines(const std::vector<RowRecord>& rows);
 
 /// What a run found, in three lines: the fastest row of each scene; CDT compared with BVH, and each API with openmp;
@@ -56,7 +57,8 @@ struct BenchResult {
 /// What the fields of each row are read from.
 [[nodiscard]] std::vector<RowFacts> facts_of(const BenchResult& result);
 
-/// The results of a scene's rows, by device, under headings that name the hardware.
+/// The results of a scene's rows, by device, under headings that name the hardware; failure_lines() has those that were
+/// skipped or are unsupported.
 [[nodiscard]] Table rate_table(const std::string& scene, const BenchResult& result);
 
 /// Where the time of all rows goes, in milliseconds, by scene and device.

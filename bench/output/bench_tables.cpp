@@ -36,7 +36,7 @@ public:
     {
         std::set<std::string> all;
         for (const RowRecord& row : result.rows)
-            all.insert(heading_of(row, result.devices));
+            if (!std::holds_alternative<Skipped>(row.outcome)) all.insert(heading_of(row, result.devices));
         needed_ = all.size() > 1;
     }
 
@@ -85,7 +85,7 @@ Table rate_table(const std::string& scene, const BenchResult& result)
     Table table(columns_of(&RowField::rates, reference_name(rows)));
     Headings headings(table, result);
     for (const std::size_t i : by_device(result)) {
-        if (rows[i].row->key.scene != scene) continue;
+        if (rows[i].row->key.scene != scene || std::holds_alternative<Skipped>(rows[i].row->outcome)) continue;
         headings.before(*rows[i].row);
         table.add(cells_of(&RowField::rates, rows[i]));
     }

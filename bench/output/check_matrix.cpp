@@ -137,7 +137,7 @@ Table self_test_table(const std::vector<RowRecord>& rows)
     std::vector<std::string> told;
     for (const RowRecord& row : rows) {
         const std::string label = device_label(row.key);
-        if (!row.device.usable || row.key.kernel.math != MathMode::exact ||
+        if (row.device.name.empty() || !row.device.usable || row.key.kernel.math != MathMode::exact ||
             std::ranges::find(told, label) != told.end())
             continue;
         told.push_back(label);

@@ -95,8 +95,9 @@ std::string case_xml(const RowRecord& row, CaseOutcome outcome)
 }
 
 struct Suite {
-    std::string scene, cases;
-    std::map<std::string, std::string> properties;
+    std::string_view verb;
+    std::string scene = {}, cases = {};
+    std::map<std::string, std::string> properties = {};
     int tests = 0, failures = 0, errors = 0, skipped = 0;
     double time_s = 0;
 
@@ -125,9 +126,9 @@ struct Suite {
 
     void add_problem(const std::string& problem)
     {
-        cases += fmt::format("    <testcase classname=\"tetrace.check\" name=\"has a result\" time=\"0.000000\">\n"
+        cases += fmt::format("    <testcase classname=\"tetrace.{}\" name=\"has a result\" time=\"0.000000\">\n"
                              "      <error message=\"{}\"/>\n    </testcase>\n",
-                             xml_text(problem));
+                             verb, xml_text(problem));
         ++tests;
         ++errors;
     }
@@ -150,9 +151,9 @@ struct Suite {
 
     [[nodiscard]] std::string xml() const
     {
-        return fmt::format("  <testsuite name=\"tetrace check{}{}\" tests=\"{}\" failures=\"{}\" errors=\"{}\" "
+        return fmt::format("  <testsuite name=\"tetrace {}{}{}\" tests=\"{}\" failures=\"{}\" errors=\"{}\" "
                            "skipped=\"{}\" time=\"{:.6f}\">\n{}{}  </testsuite>\n",
-                           scene.empty() ? "" : " ", xml_text(scene), tests, failures, errors, skipped, time_s,
+                           verb, scene.empty() ? "" : " ", xml_text(scene), tests, failures, errors, skipped, time_s,
                            properties_xml(), cases);
     }
 };
@@ -167,9 +168,9 @@ std::map<std::string, std::string> program_properties()
             {"host.system", host.system}};
 }
 
-std::string document_xml(std::vector<Suite> suites)
+std::string document_xml(std::vector<Suite> suites, std::string_view verb)
 {
-    Suite sum;
+    Suite sum{verb};
     std::string text;
     for (Suite& suite : suites) {
         suite.properties.merge(program_properties());
@@ -178,32 +179,35 @@ std::string document_xml(std::vector<Suite> suites)
         sum.errors += suite.errors;
         text += suite.xml();
     }
-    return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"tetrace check\" tests=\"{}\" "
+    return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"tetrace {}\" tests=\"{}\" "
                        "failures=\"{}\" errors=\"{}\">\n{}</testsuites>\n",
-                       sum.tests, sum.failures, sum.errors, text);
+                       verb, sum.tests, sum.failures, sum.errors, text);
 }
 
 } // namespace
 
-std::string junit_xml(const std::vector<RowRecord>& rows, const std::vector<bool>& failed, const std::string& problem)
+std::string junit_xml(const std::vector<RowRecord>& rows, const std::vector<bool>& failed, const std::string& problem,
+                      std::string_view verb)
 {
     std::vector<Suite> suites;
-    if (!problem.empty()) suites.emplace_back().add_problem(problem);
+    if (!problem.empty()) suites.emplace_back(Suite{verb}).add_problem(problem);
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (suites.empty() || suites.back().scene != rows[i].key.scene) suites.emplace_back().scene = rows[i].key.scene;
+        if (suites.empty() || suites.back().scene != rows[i].key.scene)
+            suites.push_back(Suite{verb, rows[i].key.scene});
         suites.back().add(rows[i], failed[i]);
     }
-    return document_xml(std::move(suites));
+    return document_xml(std::move(suites), verb);
 }
 
 std::string junit_suite(const std::string& suite, const std::vector<JunitCase>& cases, const std::string& problem)
 {
+    constexpr std::string_view verb = "check";
     std::vector<Suite> suites;
-    if (!problem.empty()) suites.emplace_back().add_problem(problem);
-    if (!cases.empty()) suites.emplace_back().scene = suite;
+    if (!problem.empty()) suites.emplace_back(Suite{verb}).add_problem(problem);
+    if (!cases.empty()) suites.push_back(Suite{verb, suite});
     for (const JunitCase& test : cases)
         suites.back().add(test);
-    return document_xml(std::move(suites));
+    return document_xml(std::move(suites), verb);
 }
 
 } // namespace tetrace

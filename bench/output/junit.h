@@ -3,6 +3,7 @@
 #include "bench/rows/row_record.h"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tetrace {
@@ -19,14 +20,15 @@ struct JunitCase {
     double time_s = 0;
 };
 
-/// The rows of `tetrace check` as JUnit XML, valid by the schema of Jenkins' xUnit plugin (junit-10.xsd), which GitLab
-/// and GitHub read too: one test suite per scene, one test case per row. The test case's class is API and device
-/// without any version, "tetrace.vulkan.llvmpipe"; versions and self-tests are properties of the suite, by device.
-/// failed: whether the row fails the check (a method's own flaws may pass). Wrong rows have a failure element, errors
-/// an error element, unsupported and skipped rows a skipped element, each with its reason; cell and hash are the test's
-/// output. problem: why the check itself failed; it becomes a test case of its own, in error; none if it is empty.
+/// The rows of `tetrace check`, or of another verb, as JUnit XML, valid by the schema of Jenkins' xUnit plugin
+/// (junit-10.xsd), which GitLab and GitHub read too: one test suite per scene, one test case per row. The test case's
+/// class is API and device without any version, "tetrace.vulkan.llvmpipe"; versions and self-tests are properties of
+/// the suite, by device. failed: whether the row fails the check (a method's own flaws may pass). Wrong rows have a
+/// failure element, errors an error element, unsupported and skipped rows a skipped element, each with its reason; cell
+/// and hash are the test's output. problem: why the check itself failed; it becomes a test case of its own, in error;
+/// none if it is empty.
 [[nodiscard]] std::string junit_xml(const std::vector<RowRecord>& rows, const std::vector<bool>& failed,
-                                    const std::string& problem = {});
+                                    const std::string& problem = {}, std::string_view verb = "check");
 
 /// The same of one suite of other test cases: "tetrace check <suite>".
 [[nodiscard]] std::string junit_suite(const std::string& suite, const std::vector<JunitCase>& cases,

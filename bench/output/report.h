@@ -49,8 +49,7 @@ void deliver_to_file(const Options& options, const Report& report);
 [[nodiscard]] nlohmann::json result_head(const Options& options);
 
 /// What an interrupted run prints under "Stopped", and `show` prints again.
-inline constexpr const char* interrupted_sentence = "by a signal: this is what the run had by then. Rows with fewer "
-                                                    "than 5 samples have no interval; rows without an answer are "
-                                                    "skipped.";
+inline constexpr const char* interrupted_sentence =
+    "by a signal: this is what the run had by then. Rows without an answer are skipped.";
 
 } // namespace tetrace

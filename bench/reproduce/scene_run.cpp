@@ -89,7 +89,8 @@ void load_scene_of(SceneRun& run, const Options& options)
 {
     run.scene = std::make_unique<SceneWork>(load_work(run.build.request, options, run.build.label));
     run.likeness = likeness_of(run.build.scene, run.scene->loaded().scene, run.scene->counts());
-    run.sampling = sampling_of(*run.scene, view_count(options.camera_set));
+    const bool is_of_papers = !options.own_cameras && options.camera_set == CameraSet::flight;
+    run.sampling = is_of_papers ? sampling_of(*run.scene, camera_set_size(options)) : Sampling::chosen;
     if (run.build.robustness) run.flat = std::make_unique<FlatTets>(*run.scene);
 }
 

@@ -72,6 +72,11 @@ void something_to_keep()
     }
 }
 
+bool is_stop_handled()
+{
+    return handled[0] || handled[1];
+}
+
 bool is_interrupted()
 {
     return interrupted;

@@ -16,10 +16,13 @@ public:
 /// Says that the work has a part that is complete. Before, a signal ends the process at once.
 void something_to_keep();
 
+/// Whether a signal only asks the work to stop.
+[[nodiscard]] bool is_stop_handled();
+
 /// Whether the work has been asked to stop. Long work looks between its steps.
 [[nodiscard]] bool is_interrupted();
 
-/// For tests: as a signal would.
+/// As a signal would: where a child process has taken it, and in tests.
 void interrupt();
 /// Forgets an interrupt.
 void forget_interrupt();

@@ -70,6 +70,40 @@ BenchResult run_bench(const std::vector<RowKey>& keys, const Options& options, c
     return result;
 }
 
+namespace {
+
+/// rows: what was measured, also if it then throws.
+int bench(const Options& options, const BenchmarkFlags& flags, const std::vector<RowKey>& keys,
+          std::vector<RowRecord>& rows)
+{
+    nlohmann::json head = run_head(options, keys);
+    if (flags.repetitions) head["repetitions"] = *flags.repetitions;
+    const auto journal = open_journal(options, head);
+    const BenchResult result = run_bench(keys, options, flags, journal.get());
+    rows = result.rows;
+    Report report = bench_report(result, options, result_head(options));
+    if (options.junit && !prints_junit(options)) report.sheet.labelled("JUnit", options.junit->string());
+    // Google Benchmark has already written its own format to standard output, if it was asked to.
+    if (!flags.format && !prints_junit(options))
+        deliver(options, report);
+    else if (options.out)
+        deliver_to_file(options, report);
+    if (result.interrupted) return end_interrupted();
+    end_journal(journal.get(), options);
+    require_judged(rows, options.required);
+    require_answers(rows, "measured");
+    return exit_code(rows, true);
+}
+
+/// Standard output has room for one of them.
+void check_junit(const Options& options, const BenchmarkFlags& flags)
+{
+    if (prints_junit(options) && flags.format)
+        throw Error(ErrorKind::usage, "--junit -: --benchmark_format writes to standard output, too; name a file");
+}
+
+} // namespace
+
 int bench_command(const Options& options)
 {
     BenchmarkFlags flags = read_benchmark_flags(options.benchmark_flags);
@@ -78,27 +112,23 @@ int bench_command(const Options& options)
         flags.out = shard_file(flags.out, shard_of(options)).string();
     check_anonymous(options, flags);
     check_resume(options, flags);
-    const auto keys =
-        selected_rows(options, [&](const std::string& name) { return benchmark_filter_keeps(flags.filter, name); });
-    if (options.list || flags.list_tests) return list_rows(keys);
+    check_junit(options, flags);
+    const auto select = [&] {
+        return selected_rows(options,
+                             [&](const std::string& name) { return benchmark_filter_keeps(flags.filter, name); });
+    };
+    if (options.list || flags.list_tests) return list_rows(select());
     check_output(options);
     const StopWhenInterrupted stop;
     check_columns(options, bench_columns());
     if (!flags.out.empty()) check_writable("--benchmark_out", flags.out);
-    nlohmann::json head = run_head(options, keys);
-    if (flags.repetitions) head["repetitions"] = *flags.repetitions;
-    const auto journal = open_journal(options, head);
-    const BenchResult result = run_bench(keys, options, flags, journal.get());
-    const Report report = bench_report(result, options, result_head(options));
-    // Google Benchmark has already written its own format to standard output, if it was asked to.
-    if (!flags.format)
-        deliver(options, report);
-    else if (options.out)
-        deliver_to_file(options, report);
-    if (result.interrupted) return end_interrupted();
-    end_journal(journal.get(), options);
-    require_answers(result.rows, "measured");
-    return exit_code(result.rows, true);
+    std::vector<RowRecord> rows;
+    return with_junit(rows, options, [&] {
+        require_devices(options.required); // first: its reason for an empty selection is better
+        const auto keys = select();
+        require_selected(keys, options);
+        return bench(options, flags, keys, rows);
+    });
 }
 
 } // namespace tetrace

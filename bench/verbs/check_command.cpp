@@ -21,11 +21,6 @@ namespace tetrace {
 
 namespace {
 
-bool on_standard_output(const std::optional<std::filesystem::path>& file)
-{
-    return file && *file == "-";
-}
-
 /// Without pictures where none were asked for.
 struct Checked {
     std::vector<RowRecord> rows;
@@ -68,7 +63,7 @@ Report check_report(const Checked& checked, const Options& options)
     if (checked.pictures != nullptr)
         for (const auto& file : checked.pictures->files())
             report.sheet.labelled("Picture", file.string());
-    if (options.junit && !on_standard_output(options.junit)) report.sheet.labelled("JUnit", options.junit->string());
+    if (options.junit && !prints_junit(options)) report.sheet.labelled("JUnit", options.junit->string());
     if (options.out) report.sheet.labelled("Result", options.out->string());
     report.sheet.append(last); // after the names of files
     return report;
@@ -95,23 +90,12 @@ Options with_default_layouts(Options options)
     return options;
 }
 
-/// Without this, a required backend without a selected row would pass unnoticed.
-void require_selected(const std::vector<RowKey>& keys, const std::vector<std::string>& backends)
-{
-    for (const std::string& name : backends)
-        if (std::ranges::none_of(keys, [&](const RowKey& key) { return key.backend == name; }))
-            throw Error(ErrorKind::missing,
-                        fmt::format("--require {0}: no row of {0} is selected, so none would be judged; 'tetrace check "
-                                    "--list' with the same options prints those that are",
-                                    name));
-}
-
 /// checked: also what is done if the check ends early.
 int check(const Options& options, Checked& checked)
 {
     require_devices(options.required); // first: its reason for an empty selection is better
     const auto keys = selected_rows(options, [](const std::string&) { return true; });
-    require_selected(keys, options.required);
+    require_selected(keys, options);
     check_columns(options, check_columns_of(keys));
     for (const std::string& sentence : missing_default_scenes(options))
         say(sentence);
@@ -130,7 +114,7 @@ int check(const Options& options, Checked& checked)
     checked.rows = records_of(run.rows);
     checked.scenes = scene_records(run, options);
     const auto& rows = checked.rows;
-    if (!on_standard_output(options.junit))
+    if (!prints_junit(options))
         deliver(options, check_report(checked, options));
     else if (options.out)
         deliver_to_file(options, check_report(checked, options));
@@ -150,6 +134,21 @@ int list_selected(const Options& options)
 
 } // namespace
 
+bool prints_junit(const Options& options)
+{
+    return options.junit && *options.junit == "-";
+}
+
+void require_selected(const std::vector<RowKey>& keys, const Options& options)
+{
+    for (const std::string& name : options.required)
+        if (std::ranges::none_of(keys, [&](const RowKey& key) { return key.backend == name; }))
+            throw Error(ErrorKind::missing,
+                        fmt::format("--require {0}: no row of {0} is selected, so none would be judged; 'tetrace {1} "
+                                    "--list' with the same options prints those that are",
+                                    name, options.verb == Verb::check ? "check" : "bench"));
+}
+
 void require_judged(const std::vector<RowRecord>& rows, const std::vector<std::string>& backends)
 {
     for (const RowRecord& row : rows) {
@@ -166,13 +165,30 @@ void write_junit(const std::vector<RowRecord>& rows, const Options& options, con
     if (!options.junit) return;
     std::vector<bool> failed;
     for (const RowRecord& row : rows)
-        failed.push_back(fails_check(row, options.allow_flawed));
-    std::string xml = junit_xml(rows, failed, problem);
+        failed.push_back(options.verb == Verb::check ? fails_check(row, options.allow_flawed) : fails(row, true));
+    std::string xml = junit_xml(rows, failed, problem, name_of(options.verb));
     if (options.anonymous) xml = anonymous_text(xml, options);
-    if (on_standard_output(options.junit))
+    if (prints_junit(options))
         print(xml);
     else
         write_whole(*options.junit, xml);
+}
+
+int with_junit(const std::vector<RowRecord>& rows, const Options& options, const std::function<int()>& work)
+{
+    if (options.junit && !prints_junit(options)) check_writable("--junit", *options.junit);
+    int code = 0;
+    try {
+        code = work();
+    } catch (const Error& error) {
+        write_junit(rows, options, error.what());
+        throw;
+    }
+    const bool interrupted = code == exit_code(ErrorKind::interrupted);
+    write_junit(rows, options,
+                interrupted ? fmt::format("the {} was interrupted: not all views were traced", name_of(options.verb))
+                            : "");
+    return code;
 }
 
 int check_command(const Options& asked)
@@ -185,20 +201,10 @@ int check_command(const Options& asked)
                     "--resume: --differences would lack the pictures of views that were traced before; "
                     "leave one of them out");
     check_output(options);
-    if (options.junit && !on_standard_output(options.junit)) check_writable("--junit", *options.junit);
     const StopWhenInterrupted stop;
+    if (options.junit || options.out) something_to_keep(); // also where a CI's time ends before the first view
     Checked checked;
-    int code = 0;
-    try {
-        code = check(options, checked);
-    } catch (const Error& error) {
-        // Whoever reads only the XML must not take a check without a result for a good one.
-        if (error.kind() != ErrorKind::interrupted) write_junit(checked.rows, options, error.what());
-        throw;
-    }
-    const bool interrupted = code == exit_code(ErrorKind::interrupted);
-    write_junit(checked.rows, options, interrupted ? "the check was interrupted: not all views were traced" : "");
-    return code;
+    return with_junit(checked.rows, options, [&] { return check(options, checked); });
 }
 
 } // namespace tetrace

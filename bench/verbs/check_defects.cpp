@@ -12,11 +12,6 @@ namespace tetrace {
 
 namespace {
 
-bool prints_junit(const Options& options)
-{
-    return options.junit && *options.junit == "-";
-}
-
 void write_junit(const std::vector<DefectRun>& runs, const Options& options, const std::string& problem = {})
 {
     if (!options.junit) return;
@@ -54,7 +49,7 @@ int check_defects(const Options& options)
             deliver_to_file(options, report);
         require_run(runs, options.required);
     } catch (const Error& error) {
-        if (error.kind() != ErrorKind::interrupted) write_junit(runs, options, error.what());
+        write_junit(runs, options, error.what());
         throw;
     }
     write_junit(runs, options);

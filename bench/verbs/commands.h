@@ -4,6 +4,7 @@
 #include "bench/options/options.h"
 #include "bench/output/bench_report.h"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -46,9 +47,18 @@ void say_how_to_go_on(const Options& options);
 /// Says so, where it was asked for, at the end of a run that was interrupted; the exit code.
 [[nodiscard]] int end_interrupted();
 
-/// Writes the file of --junit where it was asked for. problem: why the check ended early, or fails although no row
-/// does; empty where neither is so.
+/// Throws Error{missing} naming the first required backend of which no row is selected, so that it would pass
+/// unnoticed.
+void require_selected(const std::vector<RowKey>& keys, const Options& options);
+
+/// Whether --junit is for standard output.
+[[nodiscard]] bool prints_junit(const Options& options);
+/// Writes the file of --junit where it was asked for. problem: why the run ended early, or fails although no row does;
+/// empty where neither is so.
 void write_junit(const std::vector<RowRecord>& rows, const Options& options, const std::string& problem = {});
+/// Does a verb's work, whose exit code it returns, and writes the file of --junit, also if the work ends early: whoever
+/// reads only the XML must not take a run without a result for a good one. rows: filled by the work.
+int with_junit(const std::vector<RowRecord>& rows, const Options& options, const std::function<int()>& work);
 
 /// What a long run says where it is interrupted and keeps nothing: how to begin again. Empty for a short one.
 [[nodiscard]] std::string words_when_begun(const Options& options);

@@ -94,8 +94,11 @@ Merged merged_bench(const Shards& shards, const Options& options)
         result.measurement.samples =
             std::max(result.measurement.samples, static_cast<unsigned>(row.samples_s.size() / runs));
     }
-    return {bench_report(result, options, head_of(shards, options)), exit_code(result.rows, true),
-            error_of([&] { require_answers(result.rows, "measured"); })};
+    write_junit(result.rows, options);
+    return {bench_report(result, options, head_of(shards, options)), exit_code(result.rows, true), error_of([&] {
+                require_judged(result.rows, options.required);
+                require_answers(result.rows, "measured");
+            })};
 }
 
 Merged merged_check(const Shards& shards, const Options& options)
@@ -177,6 +180,7 @@ Merged merged_run(const Shards& shards, const Options& options)
 {
     if (options.verb == Verb::bench) return merged_bench(shards, options);
     if (options.verb == Verb::check) return merged_check(shards, options);
+    if (options.junit) throw Error(ErrorKind::usage, "--junit: these shards are of 'reproduce', which has no JUnit");
     return merged_reproduction(shards, options);
 }
 
@@ -192,7 +196,10 @@ int merge_command(const Options& asked)
     Sheet more = machines_sheet(merged.report.json["tetrace"]["merged"]);
     merged.report.sheet.append(more);
     if (!merged.report.markdown.empty()) merged.report.markdown += more.markdown();
-    deliver(options, merged.report);
+    if (!prints_junit(options))
+        deliver(options, merged.report);
+    else if (options.out)
+        deliver_to_file(options, merged.report);
     if (merged.error) throw *merged.error;
     return merged.code;
 }

@@ -83,7 +83,7 @@ int run_verb(const Options& options)
     case Verb::show: return show_command(options);
     case Verb::report: return report_command(options);
     case Verb::merge: return merge_command(options);
-    case Verb::help: print(help_text(options.help_topic)); return 0;
+    case Verb::help: print(help_text(options.help_topic, options.whole_help)); return 0;
     case Verb::version: print(version_text()); return 0;
     }
     throw Error(ErrorKind::internal, "run_verb: no such verb");

@@ -45,21 +45,26 @@ void add_devices(Reproduction& all, const RecordedRows& run, const Options& opti
     if (devices.size() > all.devices.size()) all.devices = std::move(devices);
 }
 
-json journal_head(const Options& options, const std::vector<SceneBuild>& builds)
+std::vector<RowKey> rows_of_run(const std::vector<SceneBuild>& builds, const Options& options)
 {
     std::vector<RowKey> rows;
+    for (const SceneBuild& build : builds)
+        std::ranges::move(rows_of_build(build, options), std::back_inserter(rows));
+    if (wants(options, PaperTarget::table5)) std::ranges::move(select_search_rows(options), std::back_inserter(rows));
+    return rows;
+}
+
+json journal_head(const Options& options, const std::vector<SceneBuild>& builds)
+{
     json scenes = json::array();
     for (const SceneBuild& build : builds) {
         scenes.push_back(scene_head(build.request, build.label));
         scenes.back()["robustness"] = build.robustness;
         scenes.back()["timing"] = build.timing;
-        std::ranges::move(rows_of_build(build, options), std::back_inserter(rows));
     }
-    const bool searches = wants(options, PaperTarget::table5);
-    if (searches) std::ranges::move(select_search_rows(options), std::back_inserter(rows));
-    json head = run_head(options, rows);
+    json head = run_head(options, rows_of_run(builds, options));
     head["scenes"] = std::move(scenes);
-    if (searches) head["searches"] = {options.searches.tets, options.searches.rays};
+    if (wants(options, PaperTarget::table5)) head["searches"] = {options.searches.tets, options.searches.rays};
     return head;
 }
 
@@ -121,11 +126,13 @@ int reproduce_rivals(const Options& asked)
 {
     check_output(asked);
     std::vector<std::string> missing;
+    require_devices(asked.required);
     const Options options = rival_options(asked, missing);
     for (const std::string& sentence : missing)
         say(sentence);
     const StopWhenInterrupted stop;
     const auto rows = rival_rows(options);
+    require_selected(rows, options);
     const auto journal = open_journal(options, run_head(options, rows));
     BenchResult result = run_bench(rows, options, read_benchmark_flags({}), journal.get());
     result.missing_scenes = missing;
@@ -133,6 +140,7 @@ int reproduce_rivals(const Options& asked)
     deliver(options, rival_report(result, tables, options));
     if (result.interrupted) return end_interrupted();
     end_journal(journal.get(), options);
+    require_judged(result.rows, options.required);
     require_answers(result.rows, "measured");
     return exit_code(result.rows, true);
 }
@@ -142,6 +150,7 @@ int reproduce_rivals(const Options& asked)
 int reproduce_command(const Options& asked)
 {
     if (wants(asked, PaperTarget::rivals)) return reproduce_rivals(asked);
+    require_devices(asked.required);
     Reproduction all;
     const Options options = with_defaults(asked, all.missing_scenes);
     check_output(options);
@@ -151,6 +160,7 @@ int reproduce_command(const Options& asked)
         throw Error(ErrorKind::usage, fmt::format("--shard {}: this shard would be empty: neither a view nor a "
                                                   "batch of searches",
                                                   text_of(shard_of(options))));
+    if (!options.required.empty()) require_selected(rows_of_run(builds, options), options);
     all.missing_devices = missing_devices(options);
     Keeping keeping(options, builds);
     for (const std::string& sentence : all.missing_scenes)
@@ -170,6 +180,9 @@ int reproduce_command(const Options& asked)
     deliver(options, reproduction_report(all, options));
     if (is_interrupted()) return end_interrupted();
     end_journal(keeping.journal.get(), options);
+    for (const SceneRun& run : all.runs)
+        require_judged(records_of(run.rows), options.required);
+    if (all.searches) require_judged(records_of(all.searches->rows), options.required);
     require_any_answer(all);
     return rows_exit_code(all);
 }

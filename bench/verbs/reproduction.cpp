@@ -126,7 +126,7 @@ void make_tables(Reproduction& all, const Options& options)
         all.tables.push_back(table3_rates(runs));
     }
     if (wants(options, PaperTarget::table4)) {
-        all.tables.push_back(table4(runs, view_count(options.camera_set)));
+        all.tables.push_back(table4(runs, camera_set_size(options)));
         all.figures.push_back(table4_views(runs));
     }
     if (all.searches) {

@@ -115,7 +115,7 @@ TEST_F(Trace, of_a_ray_that_there_is_not_is_refused)
                    "no kernel has method maria and layout half32");
     expect_refused(scene + "--pixel 0,0 --rays shadow", "--pixel: 0,0 makes no shadow ray");
     expect_refused(scene + "--pixel 1,1 --rays shadow,ao", "--rays accepts one value");
-    expect_refused("--pixel 1,1", "--scene accepts one scene");
+    expect_refused("--pixel 1,1", "--scene SCENE is missing: which scene?");
     expect_refused("--scene cubes,banana --pixel 1,1", "--scene accepts one scene");
 }
 

@@ -1,4 +1,5 @@
 
+#include "bench/measuring/budget.h"
 #include "bench/output/bench_report.h"
 #include "bench/output/row_fields.h"
 #include "bench/terminal/text.h"
@@ -243,6 +244,23 @@ TEST_F(BenchTables, a_row_that_did_not_run_comes_last)
     result_.rows[0].device = {};
     const std::string text = rate_table("bunny", result_).text();
     EXPECT_GT(text.find("not run"), text.find("H200 (gpu)")) << text;
+}
+
+TEST_F(BenchTables, rows_that_were_skipped_are_lines_below_the_table_one_for_all_that_the_budget_skipped)
+{
+    const std::size_t all = rate_table("bunny", result_).rows().size();
+    for (const std::size_t row : {0, 1, 2})
+        result_.rows[row].outcome =
+            Skipped{Status::skipped, fmt::format("would take about {} s{}7m it is measured", row + 1, with_budget)};
+    result_.rows[3].outcome = Skipped{Status::unsupported, "no such buffers"};
+    EXPECT_EQ(rate_table("bunny", result_).rows().size(), all - 4);
+    EXPECT_EQ(flat_table(result_).rows().size(), result_.rows.size()) << "CSV has all";
+    const std::string text = failure_lines(result_.rows).text();
+    EXPECT_TRUE(contains(text, "3 rows, such as " + row_name(result_.rows[0].key) +
+                                   ": skipped: would take about 1 s; with --budget 7m it is measured\n"))
+        << text;
+    EXPECT_TRUE(contains(text, row_name(result_.rows[3].key) + ": unsupported: no such buffers\n")) << text;
+    EXPECT_EQ(std::ranges::count(text, '\n'), 3) << text;
 }
 
 TEST_F(BenchTables, no_two_columns_of_csv_have_one_key)

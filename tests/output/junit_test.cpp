@@ -71,6 +71,14 @@ TEST(Junit, a_check_without_a_result_is_a_case_in_error)
     expect_valid(xml);
 }
 
+TEST(Junit, suites_are_named_after_the_verb)
+{
+    const std::string xml = junit_xml({skipped_row("none")}, {false}, "no time", "bench");
+    EXPECT_TRUE(contains(xml, "<testsuites name=\"tetrace bench\""));
+    EXPECT_TRUE(contains(xml, "classname=\"tetrace.bench\" name=\"has a result\""));
+    expect_valid(xml);
+}
+
 TEST(Junit, classes_have_no_version_and_properties_have_them)
 {
     const auto xml_of = [](const char* name, const char* driver) {

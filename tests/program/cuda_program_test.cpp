@@ -82,7 +82,7 @@ TEST_F(CudaProgram, each_failure_is_its_rows_status_and_openmps_row_goes_on)
                     {"module", "unsupported", "CUDA_ERROR_UNSUPPORTED_PTX_VERSION"}};
     for (const auto& [failure, status, reason] : expected) {
         const Ended ended = run(small_bench, failure);
-        EXPECT_TRUE(contains(row_of(ended.out, "cuda"), status)) << failure;
+        EXPECT_TRUE(contains(ended.out, std::string("/api:cuda: ") + status + ": ")) << failure;
         EXPECT_TRUE(contains(ended.out + ended.errors, reason)) << failure;
         EXPECT_TRUE(is_right(row_of(ended.out, "openmp"))) << failure;
     }

@@ -1,9 +1,11 @@
 // The manual page and the shells' completions have every verb and option, and the shells and troff take them.
+#include "bench/options/completion.h"
 #include "bench/options/help.h"
 #include "bench/options/manual.h"
 #include "bench/options/option_table.h"
 #include "tests/support/temporary_folder.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,10 +40,10 @@ bool is_installed(const std::string& program)
 class Manual : public testing::Test {
 protected:
     /// What bash offers after these words, the last of which is begun.
-    [[nodiscard]] std::string completed(const std::string& words, int last) const
+    [[nodiscard]] std::string completed(const std::string& words, int last, const std::string& before = {}) const
     {
         write_file(folder_ / "bash", bash_completion());
-        return output_of("bash -c 'source " + (folder_ / "bash").string() + "; COMP_WORDS=(" + words +
+        return output_of("bash -c '" + before + "source " + (folder_ / "bash").string() + "; COMP_WORDS=(" + words +
                          "); COMP_CWORD=" + std::to_string(last) + "; _tetrace; echo \"${COMPREPLY[@]}\"'");
     }
 
@@ -92,7 +94,49 @@ TEST_F(Manual, bash_completes_verbs_each_verbs_options_and_topics_of_help)
         }
     }
     EXPECT_EQ(completed("tetrace help zs", 2), "zsh\n");
-    EXPECT_EQ(completed("tetrace compare fi", 2), "\n") << "bash completes files itself";
+}
+
+TEST_F(Manual, bash_completes_the_values_of_options_also_in_lists_and_after_an_equals_sign)
+{
+    EXPECT_EQ(completed("tetrace bench --backend open", 3), "openmp opencl\n");
+    EXPECT_EQ(completed("tetrace bench --backend openmp,vul", 3), "openmp,vulkan\n");
+    EXPECT_EQ(completed("tetrace bench --scene = arm", 4), "armadillo\n");
+    EXPECT_EQ(completed("tetrace bench --math =", 3), "exact fast\n");
+    EXPECT_EQ(completed("tetrace reproduce figu", 2), "figure6\n");
+    EXPECT_EQ(completed("tetrace bench --samples \"\"", 3), "\n") << "a number";
+    EXPECT_EQ(completed("tetrace bench --filter --", 3), "\n") << "its value";
+    for (const OptionRow& row : option_table()) {
+        if (!is_option(row) || row.apply.names().empty()) continue;
+        const auto verb =
+            std::ranges::find_if(verb_helps(), [&](const VerbHelp& help) { return takes(help.verb, row); });
+        const std::string begun = fmt::format("tetrace {} {} ", name_of(verb->verb), row.name);
+        for (const std::string& name : {row.apply.names().front(), row.apply.names().back()})
+            EXPECT_TRUE(contains(completed(begun + name.substr(0, name.size() - 1), 3), name)) << begun << name;
+    }
+}
+
+TEST_F(Manual, bash_completes_files_of_the_verbs_and_options_that_read_or_write_some)
+{
+    write_file(folder_ / "first.json", "");
+    write_file(folder_ / "first.ply", "");
+    const auto in_folder = [&](const std::string& words, int last) {
+        return completed(words, last, "cd " + folder_.path().string() + "; ");
+    };
+    EXPECT_EQ(in_folder("tetrace compare fi", 2), "first.json\n");
+    EXPECT_EQ(in_folder("tetrace compare first.json fi", 3), "first.json\n");
+    for (const char* const name : {"first.json", "first.ply"})
+        EXPECT_TRUE(contains(in_folder("tetrace build --scene firs", 3), name)) << name;
+    EXPECT_EQ(in_folder("tetrace bench -o first.j", 3), "first.json\n");
+    EXPECT_EQ(in_folder("tetrace bench --budget firs", 3), "\n");
+}
+
+TEST_F(Manual, every_value_that_help_lists_is_accepted)
+{
+    for (const OptionRow& row : option_table())
+        for (const std::string& name : row.apply.names()) {
+            Options options;
+            EXPECT_NO_THROW(row.apply(options, name)) << row.name << ' ' << name;
+        }
 }
 
 TEST_F(Manual, zsh_reads_its_completion)
@@ -100,10 +144,25 @@ TEST_F(Manual, zsh_reads_its_completion)
     const std::string text = zsh_completion();
     for (const VerbHelp& verb : verb_helps())
         EXPECT_TRUE(contains(text, "\n    " + std::string(name_of(verb.verb)) + ")\n")) << name_of(verb.verb);
-    EXPECT_TRUE(contains(text, "'--size[Image size in pixels, one ray each; N means NxN]:WxH:_files'"));
+    EXPECT_TRUE(contains(text, "'--size=[Image size in pixels, one ray each; N means NxN]:WxH:'"));
+    EXPECT_TRUE(contains(text, ":NAME:{_sequence compadd - openmp opencl"));
     if (!is_installed("zsh")) GTEST_SKIP() << "zsh is not installed";
     write_file(folder_ / "_tetrace", text);
     EXPECT_EQ(output_of("zsh -n " + (folder_ / "_tetrace").string()), "");
+}
+
+TEST_F(Manual, fish_reads_its_completion)
+{
+    const std::string text = fish_completion();
+    EXPECT_TRUE(contains(text, "__fish_seen_subcommand_from render' -l picture "));
+    EXPECT_TRUE(contains(text, "\"printf %s\\n normals steps\")'\n"));
+    if (!is_installed("fish")) GTEST_SKIP() << "fish is not installed";
+    write_file(folder_ / "tetrace.fish", text);
+    EXPECT_EQ(output_of("fish -n " + (folder_ / "tetrace.fish").string()), "");
+    const std::string complete = "HOME=" + folder_.path().string() + " fish -c 'source " +
+                                 (folder_ / "tetrace.fish").string() + "; complete -C \"tetrace bench --";
+    EXPECT_TRUE(contains(output_of(complete + "math exact,f\"'"), "exact,fast"));
+    EXPECT_TRUE(contains(output_of(complete + "camera-set orb\"'"), "orbit"));
 }
 
 TEST_F(Manual, topics_are_those_of_help)
@@ -111,6 +170,7 @@ TEST_F(Manual, topics_are_those_of_help)
     EXPECT_EQ(help_text("man"), man_page());
     EXPECT_EQ(help_text("bash"), bash_completion());
     EXPECT_EQ(help_text("zsh"), zsh_completion());
+    EXPECT_EQ(help_text("fish"), fish_completion());
     EXPECT_EQ(parse_options({"help", "man"}).help_topic, "man");
-    EXPECT_THROW((void)parse_options({"help", "fish"}), Error);
+    EXPECT_THROW((void)parse_options({"help", "tcsh"}), Error);
 }

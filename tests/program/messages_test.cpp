@@ -92,6 +92,26 @@ TEST_F(Messages, a_mesh_that_intersects_itself_is_reported_once_with_one_exit_co
         EXPECT_TRUE(contains(row["reason"].get<std::string>(), "7 pairs of triangles")) << row;
 }
 
+TEST_F(Messages, a_check_that_a_signal_ends_while_a_scene_is_built_writes_junit_and_json)
+{
+    give_mesh_that_intersects_itself();
+    const ScopedVariable builder("TETRACE_BUILDER", folder_ / "builder");
+    for (const char* const signal : {"TERM", "INT"}) {
+        write_file(folder_ / "builder", fmt::format("#!/bin/sh\nkill -{} $PPID\nexec sleep 60\n", signal));
+        const Ended ended = run("check --backend openmp --scene knot.off,cubes --junit j.xml --out r.json");
+        EXPECT_EQ(ended.code, 130) << ended.errors;
+        EXPECT_TRUE(contains(file("j.xml"), "the check was interrupted")) << file("j.xml");
+        EXPECT_FALSE(contains(ended.out, "self-test")) << "no device was opened: " << ended.out;
+        const auto result = nlohmann::json::parse(file("r.json"))["tetrace"];
+        EXPECT_EQ(result["interrupted"], true);
+        for (const auto& row : result["rows"])
+            EXPECT_EQ(row["status"], "skipped") << row;
+        EXPECT_GT(result["rows"].size(), 2u);
+        for (const char* const name : {"j.xml", "r.json", "r.json.journal"})
+            std::filesystem::remove(folder_ / name);
+    }
+}
+
 TEST_F(Messages, a_reason_that_many_rows_share_is_one_line)
 {
     const ScopedVariable none("CUDA_VISIBLE_DEVICES", "");

@@ -36,6 +36,19 @@ TEST(Options, without_arguments_help_is_asked_for)
     EXPECT_EQ(parse_options({"-V"}).verb, Verb::version);
     EXPECT_EQ(parse_options({"-h"}).verb, Verb::help);
     EXPECT_EQ(parse_options({"check", "-h"}).help_topic, "check");
+    for (const char* const way : {"--help=all", "all"}) {
+        const Options all =
+            way == std::string("all") ? parse_options({"help", "bench", way}) : parse_options({"bench", way});
+        EXPECT_EQ(all.help_topic, "bench");
+        EXPECT_TRUE(all.whole_help);
+    }
+    for (const VerbHelp& verb : verb_helps()) {
+        if (verb.verb == Verb::help) continue;
+        const std::string name(name_of(verb.verb));
+        EXPECT_EQ(parse_options({name, "-h"}).help_topic, name);
+        EXPECT_FALSE(parse_options({name, "-h"}).whole_help);
+        EXPECT_EQ(parse_options({name, "-V"}).verb, Verb::version) << name;
+    }
     EXPECT_EQ(parse_options({"bench", "-o", "r.json"}).words, parse_options({"bench", "--out", "r.json"}).words);
 }
 
@@ -50,6 +63,10 @@ TEST(Options, slips_of_the_hand_get_a_guess)
     EXPECT_FALSE(contains(rejection({"bench", "--colour"}), "did you mean"));
     EXPECT_FALSE(contains(rejection({"draw"}), "did you mean"));
     EXPECT_EQ(did_you_mean("ab", {"abc", "cb"}), "") << "of short names everything is near";
+    EXPECT_EQ(did_you_mean("table7", {"table3", "table4"}), "") << "which of them?";
+    EXPECT_TRUE(
+        contains(rejection({"bench", "--backend", "vulcan"}), "'vulcan' is not accepted; did you mean vulkan? "));
+    EXPECT_TRUE(contains(rejection({"bench", "--method", "maira"}), "; did you mean maria? Accepted: all, plane, "));
 }
 
 TEST(Options, all_scenes_are_those_of_the_catalogue)
@@ -117,7 +134,8 @@ TEST(Options, an_unknown_value_is_answered_with_the_accepted_ones)
     EXPECT_TRUE(contains(rejection({"bench", "--format", "xml"}), "table, json, csv or markdown"));
     EXPECT_TRUE(contains(rejection({"bench", "--order", "morton"}), "chains, hilbert, reached or input"));
     EXPECT_TRUE(contains(rejection({"draw"}), "devices, scenes, build, bench, check, render, reproduce, inspect, "
-                                              "trace, dump, compare, show, report, merge or help"));
+                                              "trace, dump, compare, show, report, merge, help, --help or "
+                                              "--version"));
     EXPECT_TRUE(contains(rejection({"help", "draw"}), "bench"));
 }
 
@@ -174,13 +192,44 @@ TEST(Options, help_has_no_line_of_one_short_word)
     EXPECT_EQ(wrapped_without_orphans("one two incomprehensible", 9, 0), "one two\nincomprehensible\n");
     for (const Verb verb : {Verb::devices, Verb::scenes, Verb::build, Verb::bench, Verb::check, Verb::render,
                             Verb::reproduce, Verb::compare, Verb::report, Verb::help}) {
-        std::istringstream lines(help_text(std::string(name_of(verb))));
+        std::istringstream lines(help_text(std::string(name_of(verb)), true));
         for (std::string line, before; std::getline(lines, line); before = line) {
             const std::string words = line.substr(std::min(line.find_first_not_of(' '), line.size()));
             const bool is_short_word = !words.empty() && words.size() <= 12 && words.find(' ') == std::string::npos;
             EXPECT_FALSE(before.size() > 60 && is_short_word && words.find("--") != 0) << before << "\n" << line;
         }
     }
+}
+
+TEST(Options, help_of_a_verb_is_a_screen_with_its_usual_options_and_says_where_all_of_them_are)
+{
+    for (const VerbHelp& verb : verb_helps()) {
+        const std::string name(name_of(verb.verb)), page = first_page(verb, 80), whole = help_text(name, true);
+        EXPECT_LE(std::ranges::count(page, '\n'), 24) << page;
+        std::istringstream lines(page);
+        for (std::string line; std::getline(lines, line);)
+            EXPECT_LE(display_width(line), 80u) << line;
+        EXPECT_TRUE(page.starts_with("Usage: tetrace " + name + " ")) << page;
+        EXPECT_TRUE(contains(page, "tetrace help " + name + " all\n")) << page;
+        std::size_t usual = 0, all = 0;
+        for (const OptionRow& row : option_table()) {
+            const bool is_taken = takes(verb.verb, row);
+            const bool is_shown = page.find("\n  " + row.name + " ") != std::string::npos;
+            EXPECT_TRUE(is_taken || !is_shown) << name << ' ' << row.name;
+            EXPECT_TRUE(!is_taken || contains(whole, "\n  " + row.name)) << name << ' ' << row.name;
+            usual += is_shown;
+            all += is_taken;
+        }
+        EXPECT_LE(usual, 10u) << page;
+        EXPECT_GE(usual, std::min<std::size_t>(all, 2)) << page;
+    }
+}
+
+TEST(Options, an_option_of_other_verbs_is_answered_with_these)
+{
+    EXPECT_TRUE(
+        contains(rejection({"devices", "--clear"}), "devices: '--clear' is not an option of devices, but of scenes"));
+    EXPECT_TRUE(contains(rejection({"trace", "--views", "1"}), "'--views' is not an option; did you mean --view?"));
 }
 
 TEST(Options, every_row_is_taken_by_a_verb_and_described_with_a_full_sentence)

@@ -29,10 +29,39 @@ TEST_F(Program, describes_itself)
                                    "compare", "show", "report", "help"}) {
         const Ended help = run(std::string(verb) + (std::string(verb) == "help" ? "" : " --help"));
         EXPECT_EQ(help.code, 0);
-        EXPECT_TRUE(contains(help.out, "Examples")) << verb;
+        EXPECT_TRUE(contains(help.out, "Example")) << verb;
         EXPECT_EQ(help.errors, "");
     }
     EXPECT_TRUE(contains(run("help options").out, "| `--scene SCENE` |"));
+}
+
+TEST_F(Program, bench_and_reproduce_fail_without_what_they_require_and_junit_says_so)
+{
+    const ScopedVariable none("CUDA_VISIBLE_DEVICES", "");
+    const Ended measured = bench("--layout tet80 --require openmp --junit b.xml");
+    EXPECT_EQ(measured.code, 0) << measured.errors;
+    EXPECT_TRUE(contains(file("b.xml"), "<testsuites name=\"tetrace bench\" tests=\"1\" failures=\"0\" errors=\"0\">"));
+    EXPECT_TRUE(bench("--layout tet80 --junit -").out.starts_with("<?xml"));
+    const Ended missing = run("bench --scene cubes --size 8 --require cuda --junit c.xml");
+    EXPECT_EQ(missing.code, 3) << missing.errors;
+    EXPECT_TRUE(contains(missing.errors, "--require cuda: no usable device here: ")) << missing.errors;
+    EXPECT_TRUE(contains(file("c.xml"), "classname=\"tetrace.bench\" name=\"has a result\""));
+    const Ended reproduced = run("reproduce table3 --scene cubes --size 8 --require cuda");
+    EXPECT_EQ(reproduced.code, 3) << reproduced.errors;
+    EXPECT_TRUE(contains(reproduced.errors, "--require cuda: ")) << reproduced.errors;
+}
+
+TEST_F(Program, reproduce_takes_other_cameras_and_render_the_row_that_a_filter_keeps)
+{
+    const Ended table = run("reproduce table4 --scene cubes --resolution 3 --size 8 --backend openmp --method maria "
+                            "--layout tet80 --camera-set smoke --out t.json");
+    EXPECT_EQ(table.code, 0) << table.errors;
+    const auto scene = nlohmann::json::parse(file("t.json"))["tetrace"]["scenes"][0];
+    EXPECT_EQ(scene["camera_set"], "smoke");
+    EXPECT_EQ(scene["views"].size(), 4u);
+    const std::string picture = "render --scene cubes --resolution 3 --size 8 --views 0 --out a.ppm --filter ";
+    EXPECT_EQ(run(picture + "bvh2.*openmp").code, 0);
+    EXPECT_EQ(run(picture + "bvh3").code, 2);
 }
 
 TEST_F(Program, report_writes_a_page_from_results)

@@ -191,6 +191,23 @@ TEST_F(Resume, junit_of_an_interrupted_check_says_so)
     EXPECT_TRUE(contains(read_text(folder_ / "j.xml"), "the check was interrupted"));
 }
 
+TEST_F(Resume, a_check_that_is_interrupted_before_it_has_a_view_still_writes_junit_and_json)
+{
+    verb_ = "check";
+    for (const int signal : {SIGTERM, SIGINT}) {
+        // The journal's head is written before the scene is opened.
+        const Ended ended =
+            end(start("--method maria --layout tet80 --size 16 --views 0-3 --junit j.xml --out r.json", 1, signal));
+        EXPECT_EQ(ended.code, 130) << ended.errors;
+        EXPECT_TRUE(contains(read_text(folder_ / "j.xml"), "the check was interrupted")) << ended.errors;
+        const json part = result("r.json");
+        EXPECT_EQ(part.at("interrupted"), true);
+        EXPECT_EQ(part.at("rows").at(0).at("status"), "skipped");
+        for (const char* const file : {"j.xml", "r.json", "r.json.journal"})
+            std::filesystem::remove(folder_ / file);
+    }
+}
+
 TEST_F(Resume, bench_keeps_the_samples_of_each_run_apart)
 {
     verb_ = "bench";

@@ -61,8 +61,16 @@ TEST_F(RivalsRun, wrong_command_lines_are_refused)
     refused("rivals --resume", "name the result's file with --out");
     refused("rivals --shard 1/2 --out a.json", "--shard");
     refused("rivals --searches 10x32", "--searches");
-    refused("table6 --budget 9", "--budget");
     refused("rivals --out page.what", ".what");
+}
+
+TEST_F(RivalsRun, other_tables_measure_a_row_however_small_the_budget)
+{
+    const Ended ended = run("table6 --budget 0.0001 --size 16 --views 0-1281:600 --out t.json");
+    EXPECT_EQ(ended.code, 0) << ended.errors;
+    const auto page = result("t.json");
+    EXPECT_EQ(rows_of(page, "status", "ok"), 1u);
+    EXPECT_EQ(rows_of(page, "status", "skipped"), page.at("rows").size() - 1);
 }
 
 TEST_F(RivalsRun, ranks_that_would_all_do_the_whole_run_are_refused)

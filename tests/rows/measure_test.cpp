@@ -114,24 +114,30 @@ bool first_row_ends_before_the_second_starts(const std::vector<std::size_t>& lau
 
 } // namespace
 
-TEST_F(Measure, an_interrupt_leaves_rows_the_samples_that_they_have)
+TEST_F(Measure, an_interrupt_leaves_rows_with_five_samples_their_rate_and_others_their_answers)
 {
     options_.runs = 2;
-    const Pulses::Work interrupts_at_the_third = [taken = 0]() mutable {
-        if (++taken == 3) interrupt();
-        return std::optional(0.01);
-    };
-    double now_s = 0; // the pulse is due before each sample
-    Budget hours(1e9, [&] { return now_s += 3; });
-    const Measurement measured =
-        measure_rows(rows_, options_, read_benchmark_flags({}), hours, interrupts_at_the_third);
-    forget_interrupt();
-    EXPECT_EQ(measured.samples, 30u) << "asked for";
-    const std::size_t taken = rows_[0].samples_s.size() + rows_[1].samples_s.size();
-    EXPECT_GT(taken, 0u);
-    EXPECT_LT(taken, 10u);
-    for (const RowRun& row : rows_)
-        EXPECT_EQ(status_of(row), Status::ok) << reason_of(row);
+    for (const int pulses : {3, 20, 55}) { // one before each of 30 samples of two rows
+        const Pulses::Work interrupts = [taken = 0, pulses]() mutable {
+            if (++taken == pulses) interrupt();
+            return std::optional(0.01);
+        };
+        double now_s = 0; // the pulse is due before each sample
+        Budget hours(1e9, [&] { return now_s += 3; });
+        for (RowRun& row : rows_)
+            row.samples_s.clear(), row.wall_samples_s.clear(), row.run_samples.clear();
+        const Measurement measured = measure_rows(rows_, options_, read_benchmark_flags({}), hours, interrupts);
+        forget_interrupt();
+        EXPECT_EQ(measured.samples, 30u) << "asked for";
+        for (const RowRun& row : rows_) {
+            EXPECT_EQ(status_of(row), Status::ok) << reason_of(row);
+            EXPECT_LT(row.samples_s.size(), 30u);
+            EXPECT_TRUE(row.samples_s.empty() || row.samples_s.size() >= min_samples) << row.samples_s.size();
+            EXPECT_EQ(row.samples_s.empty(), row.run_samples.empty());
+        }
+        const std::size_t taken = rows_[0].samples_s.size() + rows_[1].samples_s.size();
+        EXPECT_EQ(taken == 0, pulses == 3) << taken;
+    }
 }
 
 // A calibration that is slow at first disturbs the first samples of both rows.
