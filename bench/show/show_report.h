@@ -29,20 +29,6 @@ struct CheckFindings {
 /// What `check` prints, and `show` prints again.
 [[nodiscard]] Sheet check_sheet(const CheckFindings& found);
 
-/// The verdict of a check, and the line that it ends with.
-struct CheckVerdict {
-    bool conforms = true;
-    std::string text; ///< "13 rows on 2 devices.", or "6 of 13 rows, all on opencl."
-
-    [[nodiscard]] Sheet line() const;
-};
-/// Empty if no row was judged. flawed_passes: as of fails_check(). required: backends of which each row must have an
-/// answer.
-[[nodiscard]] std::optional<CheckVerdict> verdict_of(const std::vector<RowRecord>& rows, bool flawed_passes,
-                                                     const std::vector<std::string>& required);
-/// In a result, under "verdict".
-void set_verdict(nlohmann::json& section, const std::optional<CheckVerdict>& verdict);
-
 /// A run again, for people and flat.
 struct RunAgain {
     Sheet sheet;

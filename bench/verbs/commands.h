@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bench/expectations/judgement.h"
 #include "bench/options/benchmark_flags.h"
 #include "bench/options/options.h"
 #include "bench/output/bench_report.h"
@@ -31,9 +32,10 @@ int merge_command(const Options& options);
 [[nodiscard]] BenchResult run_bench(const std::vector<RowKey>& keys, const Options& options,
                                     const BenchmarkFlags& flags, Journal* journal);
 
-/// Throws Error{missing} naming the first row of a required backend that has not been judged: all its rows were
-/// selected, but none ran.
-void require_judged(const std::vector<RowRecord>& rows, const std::vector<std::string>& backends);
+/// Throws Error{missing} naming the first row of a required backend that has not been judged, unless that is expected:
+/// all its rows were selected, but none ran. judgement: of these rows.
+void require_judged(const std::vector<RowRecord>& rows, const CheckJudgement& judgement,
+                    const std::vector<std::string>& backends);
 
 /// `check --defects`. options: with the default layouts of check.
 int check_defects(const Options& options);
@@ -46,9 +48,10 @@ void say_how_to_go_on(const Options& options);
 /// Says so, where it was asked for, at the end of a run that was interrupted; the exit code.
 [[nodiscard]] int end_interrupted();
 
-/// Writes the file of --junit where it was asked for. problem: why the check ended early, or fails although no row
-/// does; empty where neither is so.
-void write_junit(const std::vector<RowRecord>& rows, const Options& options, const std::string& problem = {});
+/// Writes the file of --junit where it was asked for. judgement: of these rows. problem: why the check ended early, or
+/// fails although no row does; empty where neither is so.
+void write_junit(const std::vector<RowRecord>& rows, const CheckJudgement& judgement, const Options& options,
+                 const std::string& problem = {});
 
 /// A command line of tetrace's with these arguments, as a shell takes it.
 [[nodiscard]] std::string command_of(const std::vector<std::string>& arguments);

@@ -1,4 +1,4 @@
-#include "bench/measuring/conformity.h"
+#include "bench/expectations/check_verdict.h"
 #include "bench/merging/merged_rows.h"
 #include "bench/output/bench_report.h"
 #include "bench/output/check_matrix.h"
@@ -104,16 +104,16 @@ Merged merged_check(const Shards& shards, const Options& options)
         section["rows"].push_back(row_json(check_facts(row)));
     section["missing_devices"] = missing;
     Report report{check_sheet({&rows, scenes, missing}), check_table(rows), {}};
-    const auto verdict = verdict_of(rows, options.allow_flawed, options.required);
+    const CheckJudgement judgement = judge_rows(rows, nullptr, options.allow_flawed);
+    const auto verdict = verdict_of(rows, judgement, options.required);
     set_verdict(section, verdict);
     if (verdict) report.sheet.append(verdict->line());
     report.json["tetrace"] = std::move(section);
     report.markdown = report.sheet.markdown();
     if (options.out) report.sheet.labelled("Result", options.out->string());
-    write_junit(rows, options);
-    const int code = exit_code(rows, [&](const RowRecord& row) { return fails_check(row, options.allow_flawed); });
-    return {std::move(report), code, error_of([&] {
-                require_judged(rows, options.required);
+    write_junit(rows, judgement, options);
+    return {std::move(report), exit_code(rows, judgement), error_of([&] {
+                require_judged(rows, judgement, options.required);
                 require_answers(rows, "checked");
             })};
 }
