@@ -60,12 +60,12 @@ std::vector<RowKey> places(const Options& options, const std::vector<Backend*>& 
 namespace {
 
 /// Empty if it did not run.
-std::optional<DefectShown> shown_by(const DefectRun& run)
+std::optional<DefectFinding> finding_of(const DefectRun& run)
 {
     switch (run.sight) {
-    case DefectSight::not_seen: return DefectShown::right;
-    case DefectSight::seen: return DefectShown::wrong;
-    case DefectSight::error: return DefectShown::error;
+    case DefectSight::not_seen: return DefectFinding::right;
+    case DefectSight::seen: return DefectFinding::wrong;
+    case DefectSight::error: return DefectFinding::error;
     case DefectSight::skipped: return std::nullopt;
     }
     return std::nullopt;
@@ -73,7 +73,7 @@ std::optional<DefectShown> shown_by(const DefectRun& run)
 
 void judge_by(DefectRun& run, const Expectations* expectations)
 {
-    const auto shown = shown_by(run);
+    const auto shown = finding_of(run);
     if (!shown) return;
     const Expectation* expectation = nullptr;
     if (expectations != nullptr)
@@ -121,7 +121,8 @@ int exit_code(const std::vector<DefectRun>& runs)
         if (run.sight != DefectSight::error) return exit_code(ErrorKind::wrong_result);
         if (code == 0) code = exit_code(run.kind);
     }
-    const bool any_ran = std::ranges::any_of(runs, [](const DefectRun& run) { return run.sight != DefectSight::skipped; });
+    const bool any_ran =
+        std::ranges::any_of(runs, [](const DefectRun& run) { return run.sight != DefectSight::skipped; });
     return any_ran ? code : exit_code(ErrorKind::missing);
 }
 
@@ -129,7 +130,7 @@ Expectations expectations_of(const std::vector<DefectRun>& runs)
 {
     Expectations shown;
     for (const DefectRun& run : runs)
-        if (const auto one = shown_by(run); one && !run.device.implementation.empty()) {
+        if (const auto one = finding_of(run); one && !run.device.implementation.empty()) {
             auto& worst = shown[run.device.implementation].defects.emplace(run.defect->name, *one).first->second;
             worst = std::max(worst, *one);
         }
@@ -202,9 +203,9 @@ void mark_known(std::vector<ShownRun>& runs, const ResultValue& section)
     if (!expectations) return;
     for (const ResultValue& one : expectations->at("deviations").items())
         for (ShownRun& run : runs)
-            run.is_known = run.is_known || (one.at("name").line() == case_name(run.defect) &&
-                                            one.at("device").line() == run.label() &&
-                                            one.at("judgement").line() == name_of(Judgement::known_failure));
+            run.is_known = run.is_known ||
+                           (one.at("name").line() == case_name(run.defect) && one.at("device").line() == run.label() &&
+                            one.at("judgement").line() == name_of(Judgement::known_failure));
 }
 
 /// The runs of the first device: one of each defect.
@@ -324,7 +325,7 @@ std::vector<std::string> unmentioned_of(const std::vector<DefectRun>& runs, cons
 {
     std::set<std::string> implementations;
     for (const DefectRun& run : runs)
-        if (shown_by(run) && !expectations.contains(run.device.implementation))
+        if (finding_of(run) && !expectations.contains(run.device.implementation))
             implementations.insert(run.device.implementation);
     return {implementations.begin(), implementations.end()};
 }
@@ -334,7 +335,7 @@ CheckVerdict verdict_on(const std::vector<DefectRun>& runs)
     std::set<std::string> devices;
     std::size_t ran = 0;
     for (const DefectRun& run : runs)
-        if (shown_by(run)) {
+        if (finding_of(run)) {
             devices.insert(label_of(run.backend, run.device_index));
             ++ran;
         }

@@ -58,9 +58,10 @@ struct ShownDefects {
 [[nodiscard]] ShownDefects shown_defects(const ResultValue& section);
 
 /// Drivers against defects: a line a device, a column a defect; what each defect is, and the first wrong word of each
-/// that was seen. missing: sentences on backends without a device.
+/// that was seen. missing: sentences on backends without a device. expectations: those that the runs were judged by;
+/// may be null.
 [[nodiscard]] Report defect_report(const std::vector<DefectRun>& runs, const std::vector<std::string>& missing,
-                                   const Options& options);
+                                   const Options& options, const Expectations* expectations = nullptr);
 
 /// One suite, a test case for each device and defect, which fails where the judgement does. problem: as in junit_xml().
 [[nodiscard]] std::string defect_junit(const std::vector<DefectRun>& runs, const std::string& problem = {});

@@ -129,10 +129,11 @@ Sheet expectation_lines(const ResultValue& section)
     const auto expectations = section.find("expectations");
     if (!expectations) return sheet;
     for (const ResultValue& one : expectations->at("deviations").items()) {
-        const std::string name = one.at("name").line(), device = one.at("device").line();
+        const std::string name = one.at("name").line();
         const bool is_row = name.find("/api:") != std::string::npos;
-        sheet.line(fmt::format("{}: {}{}: expected {}, shows {}", one.at("judgement").line(), name,
-                               is_row ? "" : " on " + device, one.at("expected").line(), one.at("shown").line()));
+        Judged judged{Judgement::conforms, one.at("expected").line(), one.at("shown").line()};
+        read_into(judged.judgement, one.at("judgement"));
+        sheet.line(fmt::format("{}{}: {}", name, is_row ? "" : " on " + one.at("device").line(), judged.text()));
     }
     for (const ResultValue& implementation : expectations->at("unmentioned").items())
         sheet.labelled("Unknown", fmt::format("no file of --expect mentions {}: it is expected to conform.",

@@ -26,16 +26,16 @@ void require_known(const ResultValue& value)
 }
 
 /// Statuses that a file can expect: skipped rows have no result, and one that varies is among the flakes.
-void read_status(Shown& to, const ResultValue& from)
+void read_status(Finding& to, const ResultValue& from)
 {
     read_into(to, from);
-    if (to == Shown::skipped || to == Shown::other_answers)
+    if (to == Finding::skipped || to == Finding::other_answers)
         from.reject(fmt::format("'{}' cannot be expected; 'flakes' names rows that vary", name_of(to)));
 }
 
-std::map<std::string, Shown> statuses_at(const ResultValue& object, const char* key)
+std::map<std::string, Finding> statuses_at(const ResultValue& object, const char* key)
 {
-    std::map<std::string, Shown> statuses;
+    std::map<std::string, Finding> statuses;
     if (const auto values = object.find(key))
         for (const auto& [name, value] : values->members())
             read_status(statuses[name], value);
@@ -101,14 +101,14 @@ std::string expected_name(const RowKey& key)
     return name;
 }
 
-std::optional<Shown> Expectation::status_of(const RowKey& key) const
+const Finding* Expectation::status_of(const RowKey& key) const
 {
     const std::string name = expected_name(key);
     for (const std::string& one : {key.scene + "/" + name, name})
-        if (const auto found = exceptions.find(one); found != exceptions.end()) return found->second;
-    if (!is_portable(key.kernel) || key.kernel.math != MathMode::exact) return std::nullopt;
+        if (const auto found = exceptions.find(one); found != exceptions.end()) return &found->second;
+    if (!is_portable(key.kernel) || key.kernel.math != MathMode::exact) return nullptr;
     const auto found = rows.find(std::string(name_of(key.kernel.schedule)));
-    return found == rows.end() ? std::nullopt : std::optional(found->second);
+    return found == rows.end() ? nullptr : &found->second;
 }
 
 bool Expectation::is_flake(const std::string& name) const

@@ -6,16 +6,15 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace tetrace {
 
 /// What a reduced kernel of a defect shows, from best to worst: right if it does not show its defect.
-enum class DefectShown { right, wrong, error };
+enum class DefectFinding { right, wrong, error };
 template <>
-inline constexpr auto enum_names<DefectShown> = names_up_to<DefectShown::error>("right", "wrong", "error");
+inline constexpr auto enum_names<DefectFinding> = names_up_to<DefectFinding::error>("right", "wrong", "error");
 
 /// What an implementation of an API (Device::implementation) is expected to show. tests/expected/README.md describes
 /// its form in JSON.
@@ -27,13 +26,13 @@ struct Expectation {
     };
 
     nlohmann::json self_test = nlohmann::json::object(); ///< values of self_test_json() by key; missing ones: anything
-    std::map<std::string, Shown> rows;                   ///< of our kernels in exact mode, by schedule
-    std::map<std::string, Shown> exceptions;             ///< by expected_name(), or "scene/" and that
-    std::map<std::string, DefectShown> defects;          ///< by name
+    std::map<std::string, Finding> rows;                 ///< of our kernels in exact mode, by schedule
+    std::map<std::string, Finding> exceptions;           ///< by expected_name(), or "scene/" and that
+    std::map<std::string, DefectFinding> defects;        ///< by name
     std::vector<Flakes> flakes;
 
-    /// Empty if the file does not mention the row, which is then expected to conform.
-    [[nodiscard]] std::optional<Shown> status_of(const RowKey& key) const;
+    /// Null if the file does not mention the row, which is then expected to conform.
+    [[nodiscard]] const Finding* status_of(const RowKey& key) const;
     [[nodiscard]] bool is_flake(const std::string& name) const;
     /// Adds exactly this name to those of flakes, unless it is there.
     void add_flake(const std::string& name);

@@ -21,24 +21,23 @@ const Expectation* find_in(const Expectations* expectations, const std::string& 
     return found == expectations->end() ? nullptr : &found->second;
 }
 
-/// Statuses are in the order from best to worst.
+/// Statuses are in the order from best to worst. expected: null if no file mentions it.
 template <class Status>
-Judgement judgement_of(std::optional<Status> expected, Status shown, bool is_failure)
+Judgement judgement_of(const Status* expected, Status shown, bool is_failure)
 {
-    if (expected && shown < *expected) return Judgement::unexpected_pass;
-    if (expected && shown > *expected) return Judgement::failure;
-    if (!is_failure) return Judgement::conforms;
-    return expected ? Judgement::known_failure : Judgement::failure;
+    if (expected == nullptr) return is_failure ? Judgement::failure : Judgement::conforms;
+    if (shown != *expected) return shown < *expected ? Judgement::unexpected_pass : Judgement::failure;
+    return is_failure ? Judgement::known_failure : Judgement::conforms;
 }
 
 Judged judge_row(const RowRecord& row, const Expectation* expectation, bool flawed_passes)
 {
-    const Shown shown = shown_by(row, flawed_passes);
+    const Finding shown = finding_of(row, flawed_passes);
     const std::string rate = rate_text(row);
-    const auto expected = expectation != nullptr ? expectation->status_of(row.key) : std::nullopt;
-    Judged judged{Judgement::conforms, std::string(expected ? name_of(*expected) : conforming),
+    const Finding* const expected = expectation != nullptr ? expectation->status_of(row.key) : nullptr;
+    Judged judged{Judgement::conforms, std::string(expected != nullptr ? name_of(*expected) : conforming),
                   rate.empty() ? std::string(name_of(shown)) : rate};
-    if (shown == Shown::skipped) return judged;
+    if (shown == Finding::skipped) return judged;
     if (expectation != nullptr && expectation->is_flake(row_name(row.key)))
         judged.judgement = fails(shown) || !rate.empty() ? Judgement::known_flake : Judgement::conforms;
     else
@@ -74,8 +73,14 @@ JudgedDevice& device_of(std::vector<JudgedDevice>& devices, const RowRecord& row
     const auto known = std::ranges::find(devices, label, &JudgedDevice::label);
     if (known != devices.end()) return *known;
     const Device& device = row.device;
-    return devices.emplace_back(JudgedDevice{row.key.backend, label, device.name, device.driver, device.implementation,
-                                             find_in(expectations, device.implementation) != nullptr, false, {}});
+    return devices.emplace_back(JudgedDevice{row.key.backend,
+                                             label,
+                                             device.name,
+                                             device.driver,
+                                             device.implementation,
+                                             find_in(expectations, device.implementation) != nullptr,
+                                             false,
+                                             {}});
 }
 
 void judge_self_test(JudgedDevice& device, const RowRecord& row, const Expectation* expectation)
@@ -94,7 +99,8 @@ void judge_self_test(JudgedDevice& device, const RowRecord& row, const Expectati
 
 std::string Judged::text() const
 {
-    return fmt::format("{}: expected {}, shows {}", name_of(judgement), expected, shown);
+    return fails(judgement) ? fmt::format("{}: expected {}, shows {}", name_of(judgement), expected, shown)
+                            : fmt::format("{}: {}", name_of(judgement), shown);
 }
 
 CheckJudgement judge_rows(const std::vector<RowRecord>& rows, const Expectations* expectations, bool flawed_passes)
@@ -114,16 +120,16 @@ CheckJudgement judge_rows(const std::vector<RowRecord>& rows, const Expectations
     return all;
 }
 
-Judged judge_defect(const Expectation* expectation, const std::string& name, DefectShown shown)
+Judged judge_defect(const Expectation* expectation, const std::string& name, DefectFinding shown)
 {
-    std::optional<DefectShown> expected;
+    const DefectFinding* expected = nullptr;
     if (expectation != nullptr)
         if (const auto found = expectation->defects.find(name); found != expectation->defects.end())
-            expected = found->second;
-    Judged judged{judgement_of(expected, shown, shown != DefectShown::right),
-                  std::string(expected ? name_of(*expected) : conforming), std::string(name_of(shown))};
+            expected = &found->second;
+    Judged judged{judgement_of(expected, shown, shown != DefectFinding::right),
+                  std::string(expected != nullptr ? name_of(*expected) : conforming), std::string(name_of(shown))};
     if (expectation != nullptr && expectation->is_flake("defect/" + name))
-        judged.judgement = shown == DefectShown::right ? Judgement::conforms : Judgement::known_flake;
+        judged.judgement = shown == DefectFinding::right ? Judgement::conforms : Judgement::known_flake;
     return judged;
 }
 
@@ -144,12 +150,12 @@ int exit_code(const std::vector<RowRecord>& rows, const CheckJudgement& judgemen
 namespace {
 
 /// What rows of one name showed, by scene: the worst of all devices.
-using ByScene = std::map<std::string, Shown>;
+using ByScene = std::map<std::string, Finding>;
 
 /// Of the schedule's rows that conform; empty if none does.
-std::optional<Shown> most_common(const std::map<Shown, std::size_t>& counts)
+std::optional<Finding> most_common(const std::map<Finding, std::size_t>& counts)
 {
-    std::optional<Shown> common;
+    std::optional<Finding> common;
     for (const auto& [shown, count] : counts)
         if (!fails(shown) && (!common || count > counts.at(*common))) common = shown;
     return common;
@@ -158,10 +164,9 @@ std::optional<Shown> most_common(const std::map<Shown, std::size_t>& counts)
 /// In one line if all scenes agree.
 void add_exceptions(Expectation& expectation, const RowKey& key, const ByScene& shown)
 {
-    const auto expected = expectation.status_of(key);
-    const auto deviates = [&](Shown one) { return expected ? one != *expected : fails(one); };
-    const bool agree =
-        std::ranges::all_of(shown, [&](const auto& one) { return one.second == shown.begin()->second; });
+    const Finding* const known = expectation.status_of(key);
+    const auto deviates = [&](Finding one) { return known != nullptr ? one != *known : fails(one); };
+    const bool agree = std::ranges::all_of(shown, [&](const auto& one) { return one.second == shown.begin()->second; });
     for (const auto& [scene, one] : shown)
         if (deviates(one)) expectation.exceptions[(agree ? "" : scene + "/") + expected_name(key)] = one;
 }
@@ -169,19 +174,20 @@ void add_exceptions(Expectation& expectation, const RowKey& key, const ByScene& 
 Expectation expectation_of(const std::vector<const RowRecord*>& rows, bool flawed_passes)
 {
     Expectation expectation;
-    std::map<Schedule, std::map<Shown, std::size_t>> counts;
+    std::map<Schedule, std::map<Finding, std::size_t>> counts;
     std::map<std::string, std::pair<RowKey, ByScene>> names;
     for (const RowRecord* row : rows) {
         const RowKey& key = row->key;
-        if (row->self_test && key.kernel.math == MathMode::exact) expectation.self_test = self_test_json(*row->self_test);
+        if (row->self_test && key.kernel.math == MathMode::exact)
+            expectation.self_test = self_test_json(*row->self_test);
         if (!rate_text(*row).empty()) {
             expectation.add_flake(row_name(key));
             continue;
         }
-        const Shown shown = shown_by(*row, flawed_passes);
+        const Finding shown = finding_of(*row, flawed_passes);
         if (is_portable(key.kernel) && key.kernel.math == MathMode::exact) ++counts[key.kernel.schedule][shown];
         auto& found = names.try_emplace(expected_name(key), key, ByScene()).first->second;
-        Shown& worst = found.second.emplace(key.scene, shown).first->second;
+        Finding& worst = found.second.emplace(key.scene, shown).first->second;
         worst = std::max(worst, shown);
     }
     for (const auto& [schedule, shown] : counts)
@@ -197,7 +203,7 @@ Expectations expectations_of(const std::vector<RowRecord>& rows, bool flawed_pas
 {
     std::map<std::string, std::vector<const RowRecord*>> by_implementation;
     for (const RowRecord& row : rows)
-        if (!row.device.implementation.empty() && shown_by(row, flawed_passes) != Shown::skipped)
+        if (!row.device.implementation.empty() && finding_of(row, flawed_passes) != Finding::skipped)
             by_implementation[row.device.implementation].push_back(&row);
     Expectations shown;
     for (const auto& [implementation, own] : by_implementation)

@@ -26,7 +26,7 @@ struct Judged {
     std::string shown;    ///< the same of this run, or how often: "wrong in 2 of 10"
 
     [[nodiscard]] bool is_as_expected() const { return expected == shown; }
-    /// "unexpected pass: expected wrong, shows bit-exact".
+    /// "unexpected pass: expected wrong, shows bit-exact", or "known failure: wrong".
     [[nodiscard]] std::string text() const;
 };
 
@@ -60,7 +60,7 @@ struct CheckJudgement {
                                         bool flawed_passes);
 
 /// Judges a reduced kernel. expectation: of its implementation; null if there is none.
-[[nodiscard]] Judged judge_defect(const Expectation* expectation, const std::string& name, DefectShown shown);
+[[nodiscard]] Judged judge_defect(const Expectation* expectation, const std::string& name, DefectFinding shown);
 
 /// The exit code of a check: 1 if a row or self-test fails; else that of the first error that was not expected; else 0.
 [[nodiscard]] int exit_code(const std::vector<RowRecord>& rows, const CheckJudgement& judgement);

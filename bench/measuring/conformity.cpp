@@ -70,7 +70,7 @@ std::string text_of_one(const RowRecord& row)
 
 /// How often a row that differs between repetitions showed its worst.
 struct Rate {
-    Shown worst;
+    Finding worst;
     std::size_t count, of;
 };
 
@@ -78,7 +78,7 @@ std::optional<Rate> rate_of(const RowRecord& row)
 {
     const auto& all = row.repeated;
     if (all.empty() || std::ranges::count(all, all.front()) == std::ssize(all)) return std::nullopt;
-    const Shown worst = *std::ranges::max_element(all);
+    const Finding worst = *std::ranges::max_element(all);
     return Rate{worst, static_cast<std::size_t>(std::ranges::count(all, worst)), all.size()};
 }
 
@@ -94,7 +94,7 @@ std::string conformity_text(const RowRecord& row)
 {
     const auto rate = rate_of(row);
     if (!rate) return text_of_one(row);
-    const char* const what = rate->worst == Shown::other_answers ? "other answers " : "";
+    const char* const what = rate->worst == Finding::other_answers ? "other answers " : "";
     return fmt::format("{}, {}in {} of {}", text_of_one(row), what, rate->count, rate->of);
 }
 
@@ -104,11 +104,11 @@ std::string rate_text(const RowRecord& row)
     return rate ? fmt::format("{} in {} of {}", name_of(rate->worst), rate->count, rate->of) : std::string();
 }
 
-Shown shown_by(const RowRecord& row, bool flawed_passes)
+Finding finding_of(const RowRecord& row, bool flawed_passes)
 {
     if (const auto rate = rate_of(row)) return rate->worst;
-    const Shown shown = value_named<Shown>(name_of(conformity_of(row))).value();
-    return !fails(shown) && fails_check(row, flawed_passes) ? Shown::flawed : shown;
+    const Finding shown = value_named<Finding>(name_of(conformity_of(row))).value();
+    return !fails(shown) && fails_check(row, flawed_passes) ? Finding::flawed : shown;
 }
 
 namespace {
@@ -116,16 +116,15 @@ namespace {
 RowRecord combined_row(const std::vector<const RowRecord*>& repetitions, bool flawed_passes)
 {
     std::vector<const RowRecord*> rows;
-    std::ranges::copy_if(repetitions, std::back_inserter(rows), [&](const RowRecord* row) {
-        return shown_by(*row, flawed_passes) != Shown::skipped;
-    });
+    std::ranges::copy_if(repetitions, std::back_inserter(rows),
+                         [&](const RowRecord* row) { return finding_of(*row, flawed_passes) != Finding::skipped; });
     if (rows.empty()) return *repetitions.front();
-    std::vector<Shown> shown;
+    std::vector<Finding> shown;
     for (const RowRecord* row : rows) {
-        const Shown own = shown_by(*row, flawed_passes);
-        const bool is_other = !shown.empty() && !fails(own) && own == shown.front() &&
-                              hash_of_hits(*row) != hash_of_hits(*rows.front());
-        shown.push_back(is_other ? Shown::other_answers : own);
+        const Finding own = finding_of(*row, flawed_passes);
+        const bool is_other =
+            !shown.empty() && !fails(own) && own == shown.front() && hash_of_hits(*row) != hash_of_hits(*rows.front());
+        shown.push_back(is_other ? Finding::other_answers : own);
     }
     RowRecord worst = *rows.at(static_cast<std::size_t>(std::ranges::max_element(shown) - shown.begin()));
     worst.repeated = std::move(shown);

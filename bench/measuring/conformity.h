@@ -27,7 +27,7 @@ inline constexpr auto enum_names<Conformity> = names_up_to<Conformity::error>("r
 [[nodiscard]] Conformity conformity_of(const RowRecord& row);
 
 /// What the row shows; of one that differs between repetitions the worst. flawed_passes: as of fails().
-[[nodiscard]] Shown shown_by(const RowRecord& row, bool flawed_passes);
+[[nodiscard]] Finding finding_of(const RowRecord& row, bool flawed_passes);
 
 /// Of a row that differs between repetitions how often it showed its worst: "wrong in 2 of 10"; else empty.
 [[nodiscard]] std::string rate_text(const RowRecord& row);

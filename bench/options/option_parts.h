@@ -25,6 +25,8 @@ inline constexpr unsigned reporting = measuring | bit(Verb::build) | bit(Verb::d
                                       bit(Verb::reproduce) | bit(Verb::inspect) | bit(Verb::trace) |
                                       bit(Verb::compare) | bit(Verb::show) | bit(Verb::merge);
 
+/// What a check is judged by.
+[[nodiscard]] std::vector<OptionRow> expectation_options();
 /// What becomes of a result.
 [[nodiscard]] std::vector<OptionRow> output_options();
 /// How a run is shared among processes.

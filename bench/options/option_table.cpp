@@ -327,28 +327,22 @@ std::vector<OptionRow> judging_options()
          "Run the reduced kernels of known compiler defects instead of rows; no scene is needed. Exits with 1 if a "
          "driver shows one (docs/debugging.md).",
          bit(Verb::check), false, set(&Options::defects)},
-        {"Judging", "--expect", "PATH",
-         "What implementations are expected to show: a file, or a folder with a file for each "
-         "(tests/expected/README.md). A failure that it lists passes; a new failure and an unexpected pass exit with "
-         "1. What it does not mention is expected to conform. May be repeated, or a list with commas. Default: all "
-         "conforms.",
-         bit(Verb::check), true, [](Options& o, const std::string& v) { o.expected.emplace_back(v); }},
-        {"Judging", "--write-expect", "PATH",
-         "Write what this run showed, for --expect: into one file if PATH ends in .json, else into a folder with a "
-         "file for each implementation. What is there is updated. Default: none.",
-         bit(Verb::check), false, set_path("--write-expect", &Options::write_expected)},
-        {"Judging", "--repeat", "N",
-         "Check all rows N times, 1 to 1000. A row that differs between repetitions fails, with its rate ('wrong in 2 "
-         "of 10'), unless --expect lists it among the flakes. Default: 1.",
-         bit(Verb::check), false, set_count("--repeat", &Options::repeat, 1, 1000)},
         {"Judging", "--tolerance", "PERCENT",
          "The difference in time that does not matter, in percent, 0 to 100. A row that is SLOWER by more is a "
          "regression; a row whose whole interval is within it is the SAME. Default: 3.",
          bit(Verb::compare), false,
          [](Options& o, const std::string& v) { o.tolerance = parse_percent("--tolerance", v) / 100; }},
         {"Judging", "--allow-missing", "",
-         "Exit with 0 even if rows that A timed are missing, skipped or unsupported in B. Failed rows still count.",
+         "Exit with 0 even if rows that A timed, or that it checked, are missing, skipped or unsupported in B. Failed "
+         "rows "
+         "still count.",
          bit(Verb::compare), false, set(&Options::allow_missing)},
+    };
+}
+
+std::vector<OptionRow> picture_options()
+{
+    return {
         {"Pictures", "--picture", "KIND",
          "'normals', the surface shaded by its normals, or 'steps', the steps of each ray in false colour with a scale "
          "bar. Default: normals.",
@@ -357,12 +351,6 @@ std::vector<OptionRow> judging_options()
          "Write a picture of each view in which a row differs from openmp, with the differing pixels marked: PNG, or "
          "PPM if OpenImageIO is missing. Default: none.",
          bit(Verb::check), false, set_path("--differences", &Options::picture_folder)},
-    };
-}
-
-std::vector<OptionRow> report_options()
-{
-    return {
         {"Pictures", "--image", "FILE",
          "Add this picture to the page: a PNG or PPM file, as 'tetrace render' writes it. May be repeated, or a "
          "list with commas. Default: only the pictures named by figures in the results.",
@@ -373,8 +361,9 @@ std::vector<OptionRow> report_options()
 std::vector<OptionRow> make_table()
 {
     std::vector<OptionRow> table;
-    for (auto part : {reproduce_options, inspect_options, trace_options, scene_options, row_options, ray_options,
-                      driver_options, judging_options, report_options, sharing_options, output_options})
+    for (auto part :
+         {reproduce_options, inspect_options, trace_options, scene_options, row_options, ray_options, driver_options,
+          judging_options, expectation_options, picture_options, sharing_options, output_options})
         for (OptionRow& row : part())
             table.push_back(std::move(row));
     std::stable_partition(table.begin(), table.end(), [](const OptionRow& row) { return row.group != experiments; });

@@ -109,17 +109,6 @@ std::string differences_text(const ResultComparison& comparison)
                                : fmt::format("{}.", fmt::join(differences, ", "));
 }
 
-Sheet head_of(const ResultComparison& comparison)
-{
-    Sheet sheet;
-    sheet.labelled("A", source_text(*comparison.before));
-    sheet.labelled("B", source_text(*comparison.after));
-    sheet.labelled("Differ in", differences_text(comparison));
-    for (const std::string& sentence : device_sentences(comparison))
-        sheet.labelled("Device", sentence);
-    return sheet;
-}
-
 /// Each note, for all rows that have it: "FAILED" or "MISSING" of many rows has one cause as a rule.
 Sheet notes_of(const ResultComparison& comparison)
 {
@@ -220,7 +209,7 @@ std::string verdicts_text(double tolerance)
 
 Sheet comparison_sheet(const ResultComparison& comparison, const Options& options)
 {
-    Sheet sheet = head_of(comparison);
+    Sheet sheet = comparison_head(comparison);
     sheet.gap();
     sheet.table(rows_table(comparison));
     sheet.gap();
@@ -239,6 +228,19 @@ Sheet comparison_sheet(const ResultComparison& comparison, const Options& option
     return sheet;
 }
 
+} // namespace
+
+Sheet comparison_head(const ResultComparison& comparison)
+{
+    Sheet sheet;
+    sheet.labelled("A", source_text(*comparison.before));
+    sheet.labelled("B", source_text(*comparison.after));
+    sheet.labelled("Differ in", differences_text(comparison));
+    for (const std::string& sentence : device_sentences(comparison))
+        sheet.labelled("Device", sentence);
+    return sheet;
+}
+
 nlohmann::json source_json(const ResultFile& file)
 {
     return {{"file", file.path.filename().string()},
@@ -247,8 +249,6 @@ nlohmann::json source_json(const ResultFile& file)
             {"commit", file.head.commit},
             {"host", {{"cpu", file.head.cpu}, {"system", file.head.system}}}};
 }
-
-} // namespace
 
 std::string source_text(const ResultFile& file)
 {

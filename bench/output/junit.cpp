@@ -17,8 +17,7 @@ namespace {
 CaseOutcome outcome_of(const RowRecord& row, const Judged& judged)
 {
     const Conformity conformity = conformity_of(row);
-    if (fails(judged.judgement))
-        return conformity == Conformity::error ? CaseOutcome::error : CaseOutcome::failed;
+    if (fails(judged.judgement)) return conformity == Conformity::error ? CaseOutcome::error : CaseOutcome::failed;
     const bool has_answer = conformity != Conformity::unsupported && conformity != Conformity::skipped;
     return has_answer ? CaseOutcome::passed : CaseOutcome::skipped;
 }

@@ -145,7 +145,7 @@ auto repetitions()
     return both(
         [](const RowRecord& row) {
             json shown;
-            for (const Shown one : row.repeated)
+            for (const Finding one : row.repeated)
                 shown.push_back(name_of(one));
             return shown;
         },

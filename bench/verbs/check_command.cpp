@@ -33,7 +33,7 @@ struct Checked {
     std::optional<Expectations> expectations;
     std::optional<ExpectationTarget> target;
     std::vector<RowRecord> rows;
-    CheckJudgement judgement; ///< of the rows
+    CheckJudgement judgement;           ///< of the rows
     std::vector<nlohmann::json> scenes; ///< as results record them
     std::vector<std::string> missing;
     std::unique_ptr<DifferencePictures> pictures;
@@ -222,8 +222,7 @@ void require_whole_rows(const Options& options)
         reject("--repeat: a journal has each view once, so repetitions cannot be resumed; leave out --resume");
     if (options.repeat > 1 && options.defects)
         reject("--repeat repeats rows, and --defects has none; leave one of them out");
-    if (options.repeat > 1 && is_shard)
-        reject("--repeat: shards have no repetitions; leave out --shard");
+    if (options.repeat > 1 && is_shard) reject("--repeat: shards have no repetitions; leave out --shard");
     if (is_shard && (!options.expected.empty() || options.write_expected))
         reject("--expect and --write-expect are about whole rows, and a shard has some of their views; leave out "
                "--shard");
@@ -252,7 +251,8 @@ int check_command(const Options& asked)
         throw;
     }
     const bool interrupted = code == exit_code(ErrorKind::interrupted);
-    write_junit(checked.rows, checked.judgement, options, interrupted ? "the check was interrupted: not all views were traced" : "");
+    write_junit(checked.rows, checked.judgement, options,
+                interrupted ? "the check was interrupted: not all views were traced" : "");
     return code;
 }
 
