@@ -123,6 +123,15 @@ std::vector<std::string> unmentioned_of(const CheckJudgement& judgement)
     return {implementations.begin(), implementations.end()};
 }
 
+std::set<std::string> known_failures(const ResultValue& section)
+{
+    std::set<std::string> names;
+    if (const auto expectations = section.find("expectations"))
+        for (const ResultValue& one : expectations->at("deviations").items())
+            if (one.at("judgement").line() == name_of(Judgement::known_failure)) names.insert(one.at("name").line());
+    return names;
+}
+
 Sheet expectation_lines(const ResultValue& section)
 {
     Sheet sheet;

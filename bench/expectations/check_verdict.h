@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,9 @@ void set_expectations(nlohmann::json& section, const std::vector<Deviation>& dev
 
 /// Of a judgement's devices, those that no file mentions, each implementation once.
 [[nodiscard]] std::vector<std::string> unmentioned_of(const CheckJudgement& judgement);
+
+/// The names of what failed as expected, by a result's "expectations".
+[[nodiscard]] std::set<std::string> known_failures(const ResultValue& section);
 
 /// What a result says under "expectations", line by line; nothing for a result without. Throws Error{invalid_input}
 /// naming the key that is missing or of another kind.

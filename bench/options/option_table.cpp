@@ -333,16 +333,10 @@ std::vector<OptionRow> judging_options()
          bit(Verb::compare), false,
          [](Options& o, const std::string& v) { o.tolerance = parse_percent("--tolerance", v) / 100; }},
         {"Judging", "--allow-missing", "",
-         "Exit with 0 even if rows that A timed, or that it checked, are missing, skipped or unsupported in B. Failed "
-         "rows "
-         "still count.",
+         "Exit with 0 even if rows that A timed, or checked, are missing, skipped or unsupported in B. Failed rows "
+         "still "
+         "count.",
          bit(Verb::compare), false, set(&Options::allow_missing)},
-    };
-}
-
-std::vector<OptionRow> picture_options()
-{
-    return {
         {"Pictures", "--picture", "KIND",
          "'normals', the surface shaded by its normals, or 'steps', the steps of each ray in false colour with a scale "
          "bar. Default: normals.",
@@ -351,6 +345,12 @@ std::vector<OptionRow> picture_options()
          "Write a picture of each view in which a row differs from openmp, with the differing pixels marked: PNG, or "
          "PPM if OpenImageIO is missing. Default: none.",
          bit(Verb::check), false, set_path("--differences", &Options::picture_folder)},
+    };
+}
+
+std::vector<OptionRow> report_options()
+{
+    return {
         {"Pictures", "--image", "FILE",
          "Add this picture to the page: a PNG or PPM file, as 'tetrace render' writes it. May be repeated, or a "
          "list with commas. Default: only the pictures named by figures in the results.",
@@ -363,7 +363,7 @@ std::vector<OptionRow> make_table()
     std::vector<OptionRow> table;
     for (auto part :
          {reproduce_options, inspect_options, trace_options, scene_options, row_options, ray_options, driver_options,
-          judging_options, expectation_options, picture_options, sharing_options, output_options})
+          judging_options, expectation_options, report_options, sharing_options, output_options})
         for (OptionRow& row : part())
             table.push_back(std::move(row));
     std::stable_partition(table.begin(), table.end(), [](const OptionRow& row) { return row.group != experiments; });

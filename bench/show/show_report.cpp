@@ -72,7 +72,7 @@ Sheet check_sheet(const CheckFindings& found)
     add_table(sheet, self_test_table(rows));
     sheet.append(failure_lines(rows));
     for (const RowRecord& row : rows)
-        sheet.verbatim(differences_text(row));
+        if (!found.known.contains(row_name(row.key))) sheet.verbatim(differences_text(row));
     for (const std::string& sentence : inexact_devices(rows))
         sheet.line(sentence);
     for (const RowRecord& row : rows)
@@ -184,8 +184,8 @@ RunAgain check_again(const ResultFile& file)
 {
     const ResultValue section = file.section();
     const std::vector<RowRecord> rows = read_rows(file);
-    Sheet sheet = check_sheet(
-        {&rows, scenes_of(section), sentences_at(section, "missing_devices"), section.find("interrupted").has_value()});
+    Sheet sheet = check_sheet({&rows, scenes_of(section), sentences_at(section, "missing_devices"),
+                               section.find("interrupted").has_value(), known_failures(section)});
     sheet.append(expectation_lines(section));
     sheet.append(verdict_line(section));
     return {std::move(sheet), check_table(rows)};

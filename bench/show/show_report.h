@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct CheckFindings {
     std::vector<nlohmann::json> scenes; ///< as results record them
     std::vector<std::string> missing;   ///< devices, a sentence each
     bool interrupted = false;
+    std::set<std::string> known = {}; ///< names of rows that fail as expected: their rays are not printed
 };
 
 /// What a row's fields are read from, its conformity included.

@@ -64,9 +64,10 @@ nlohmann::json check_json(const Checked& checked, const Options& options)
 Report check_report(const Checked& checked, const std::vector<std::filesystem::path>& written, const Options& options)
 {
     const auto& rows = checked.rows;
-    Report report{check_sheet({&rows, checked.scenes, checked.missing, is_interrupted()}), check_table(rows),
-                  check_json(checked, options)};
-    report.sheet.append(expectation_lines(ResultValue(report.json, "the check").at("tetrace")));
+    Report report{{}, check_table(rows), check_json(checked, options)};
+    const ResultValue section = ResultValue(report.json, "the check").at("tetrace");
+    report.sheet = check_sheet({&rows, checked.scenes, checked.missing, is_interrupted(), known_failures(section)});
+    report.sheet.append(expectation_lines(section));
     const auto verdict = verdict_of(checked, options);
     const Sheet last = verdict ? verdict->line() : Sheet();
     Sheet document = report.sheet;

@@ -198,8 +198,7 @@ TEST_F(DriverFaults, failure_in_one_of_several_repetitions_is_a_flake_with_its_r
     const Ended flaky = run_faulty(fault, check + "--write-expect known.json --out check.json --junit check.xml");
     EXPECT_EQ(flaky.code, 1) << flaky.out << flaky.errors;
     EXPECT_TRUE(contains(flaky.out, "api:opencl: differs between repetitions: wrong in 1 of 3")) << flaky.out;
-    EXPECT_TRUE(contains(file("check.json"), R"("repeated": ["wrong", "bit-exact", "bit-exact"])"))
-        << file("check.json");
+    EXPECT_TRUE(contains(file("check.json"), R"("repeated":["wrong","bit-exact","bit-exact"])")) << file("check.json");
     EXPECT_TRUE(contains(file("check.xml"), "in 1 of 3")) << file("check.xml");
     EXPECT_TRUE(contains(run("show check.json").out, "differs between repetitions: wrong in 1 of 3"));
     const Ended known = run_faulty(fault, check + "--expect known.json");
