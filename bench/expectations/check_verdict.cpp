@@ -142,7 +142,8 @@ Sheet expectation_lines(const ResultValue& section)
         const bool is_row = name.find("/api:") != std::string::npos;
         Judged judged{Judgement::conforms, one.at("expected").line(), one.at("shown").line()};
         read_into(judged.judgement, one.at("judgement"));
-        sheet.line(fmt::format("{}{}: {}", name, is_row ? "" : " on " + one.at("device").line(), judged.text()));
+        const std::string where = is_row ? "" : " on " + one.at("device").line();
+        sheet.labelled("Judged", fmt::format("{}{}: {}", name, where, judged.text()));
     }
     for (const ResultValue& implementation : expectations->at("unmentioned").items())
         sheet.labelled("Unknown", fmt::format("no file of --expect mentions {}: it is expected to conform.",
