@@ -54,7 +54,7 @@ Sheet CheckVerdict::line() const
 }
 
 CheckVerdict verdict_by_expectations(const std::string& judged, const std::vector<Deviation>& deviations,
-                                     std::size_t unanswered)
+                                     std::size_t unanswered, const std::string& end)
 {
     std::string failures, known;
     const auto add = [](std::string& text, std::size_t count, const char* one, const char* many) {
@@ -65,9 +65,8 @@ CheckVerdict verdict_by_expectations(const std::string& judged, const std::vecto
     add(failures, unanswered, "row without a result", "rows without a result");
     add(known, count_of(deviations, Judgement::known_failure), "failure as expected", "failures as expected");
     add(known, count_of(deviations, Judgement::known_flake), "known flake", "known flakes");
-    const std::string end = known.empty() ? "" : ", " + known;
-    return failures.empty() ? CheckVerdict{true, judged + end + "."}
-                            : CheckVerdict{false, fmt::format("{} in {}{}.", failures, judged, end)};
+    const std::string all = judged + (known.empty() ? "" : ", " + known) + end;
+    return failures.empty() ? CheckVerdict{true, all} : CheckVerdict{false, failures + " in " + all};
 }
 
 std::optional<CheckVerdict> verdict_of(const std::vector<RowRecord>& rows, const CheckJudgement& judgement,
@@ -77,11 +76,11 @@ std::optional<CheckVerdict> verdict_of(const std::vector<RowRecord>& rows, const
     for (std::size_t i = 0; i < rows.size(); ++i)
         tally.add(rows[i], judgement.rows[i], std::ranges::find(required, rows[i].key.backend) != required.end());
     if (tally.judged == 0) return std::nullopt;
-    if (judgement.has_expectations)
-        return verdict_by_expectations(tally.judged_text(), judgement.deviations, tally.unanswered);
     const std::size_t others = rows.size() - tally.judged;
     const std::string end =
         others == 0 ? "." : fmt::format("; {} more {} no result.", others, others == 1 ? "has" : "have");
+    if (judgement.has_expectations)
+        return verdict_by_expectations(tally.judged_text(), judgement.deviations, tally.unanswered, end);
     if (tally.failed == 0) return CheckVerdict{true, tally.judged_text() + end};
     return CheckVerdict{false, fmt::format("{} of {}, {}on {}{}", tally.failed, counted(tally.judged, "row", "rows"),
                                            tally.failed > 1 && tally.failed_on.size() == 1 ? "all " : "",

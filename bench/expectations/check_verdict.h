@@ -26,9 +26,9 @@ struct CheckVerdict {
                                                      const std::vector<std::string>& required);
 
 /// The verdict on what was judged by expectations. judged: "13 rows on 2 devices". unanswered: how many of them were
-/// required to have a result and have none.
+/// required to have a result and have none. end: of the sentence.
 [[nodiscard]] CheckVerdict verdict_by_expectations(const std::string& judged, const std::vector<Deviation>& deviations,
-                                                   std::size_t unanswered = 0);
+                                                   std::size_t unanswered = 0, const std::string& end = ".");
 
 /// In a result, under "verdict".
 void set_verdict(nlohmann::json& section, const std::optional<CheckVerdict>& verdict);

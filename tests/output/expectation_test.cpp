@@ -240,6 +240,21 @@ TEST(CheckJudgement, of_wrong_rows_alone_expects_other_rows_to_conform)
     EXPECT_EQ(exit_code(other, judge_rows(other, &shown, false)), 1);
 }
 
+TEST(CheckJudgement, of_a_required_row_that_is_expected_to_be_unsupported_passes)
+{
+    RowRecord row = good_row(Method::plane);
+    row.outcome = Skipped{Status::unsupported, "buffers are too small"};
+    const Rows rows = {good_row(), row};
+    const auto text = [&](const Json& expected) {
+        const Expectations expectations = expecting(expected);
+        return verdict_of(rows, judge_rows(rows, &expectations, false), {"vulkan"})->line().text();
+    };
+    EXPECT_EQ(text({{"exceptions", {{"cdt/plane/tet80", "unsupported"}}}}), "Conforms  2 rows on 1 device.\n");
+    EXPECT_EQ(text(Json::object()), "FAILED    1 row without a result in 2 rows on 1 device.\n");
+    EXPECT_EQ(text({{"rows", {{"tiles", "bit-exact"}}}}), "FAILED    1 new failure in 2 rows on 1 device.\n");
+    EXPECT_EQ(verdict(rows, expecting(Json::object())), "Conforms  1 row on 1 device; 1 more has no result.\n");
+}
+
 TEST(CheckJudgement, reports_implementations_that_no_file_mentions_once)
 {
     RowRecord openmp = good_row();
