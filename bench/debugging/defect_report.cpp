@@ -1,14 +1,17 @@
 #include "bench/debugging/defect_report.h"
 
+#include "bench/expectations/check_verdict.h"
 #include "bench/output/junit.h"
 #include "bench/rows/rows.h"
 #include "bench/terminal/progress.h"
+#include "bench/terminal/text.h"
 #include "core/base/printable.h"
 #include "core/base/stopwatch.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 namespace tetrace {
 
@@ -54,7 +57,35 @@ std::vector<RowKey> places(const Options& options, const std::vector<Backend*>& 
 
 } // namespace
 
-std::vector<DefectRun> run_defects(const Options& options, const std::vector<Backend*>& backends)
+namespace {
+
+/// Empty if it did not run.
+std::optional<DefectFinding> finding_of(const DefectRun& run)
+{
+    switch (run.sight) {
+    case DefectSight::not_seen: return DefectFinding::right;
+    case DefectSight::seen: return DefectFinding::wrong;
+    case DefectSight::error: return DefectFinding::error;
+    case DefectSight::skipped: return std::nullopt;
+    }
+    return std::nullopt;
+}
+
+void judge_by(DefectRun& run, const Expectations* expectations)
+{
+    const auto shown = finding_of(run);
+    if (!shown) return;
+    const Expectation* expectation = nullptr;
+    if (expectations != nullptr)
+        if (const auto found = expectations->find(run.device.implementation); found != expectations->end())
+            expectation = &found->second;
+    run.judged = judge_defect(expectation, std::string(run.defect->name), *shown);
+}
+
+} // namespace
+
+std::vector<DefectRun> run_defects(const Options& options, const std::vector<Backend*>& backends,
+                                   const Expectations* expectations)
 {
     std::vector<DefectRun> runs;
     for (const RowKey& place : places(options, backends)) {
@@ -77,16 +108,33 @@ std::vector<DefectRun> run_defects(const Options& options, const std::vector<Bac
         }
     }
     progress_line().clear();
+    for (DefectRun& run : runs)
+        judge_by(run, expectations);
     return runs;
 }
 
 int exit_code(const std::vector<DefectRun>& runs)
 {
-    const auto has = [&](DefectSight sight) { return std::ranges::find(runs, sight, &DefectRun::sight) != runs.end(); };
-    if (has(DefectSight::seen)) return exit_code(ErrorKind::wrong_result);
+    int code = 0;
+    for (const DefectRun& run : runs) {
+        if (!fails(run.judged.judgement)) continue;
+        if (run.sight != DefectSight::error) return exit_code(ErrorKind::wrong_result);
+        if (code == 0) code = exit_code(run.kind);
+    }
+    const bool any_ran =
+        std::ranges::any_of(runs, [](const DefectRun& run) { return run.sight != DefectSight::skipped; });
+    return any_ran ? code : exit_code(ErrorKind::missing);
+}
+
+Expectations expectations_of(const std::vector<DefectRun>& runs)
+{
+    Expectations shown;
     for (const DefectRun& run : runs)
-        if (run.sight == DefectSight::error) return exit_code(run.kind);
-    return has(DefectSight::not_seen) ? 0 : exit_code(ErrorKind::missing);
+        if (const auto one = finding_of(run); one && !run.device.implementation.empty()) {
+            auto& worst = shown[run.device.implementation].defects.emplace(run.defect->name, *one).first->second;
+            worst = std::max(worst, *one);
+        }
+    return shown;
 }
 
 namespace {
@@ -101,7 +149,8 @@ struct ShownRun {
     std::string defect, what, known, backend;
     std::uint64_t index = 0, items = 0, wrong = 0;
     std::string device, type, driver, implementation, outcome;
-    std::string detail; ///< the first wrong word, or the reason; empty if all is well
+    std::string detail;    ///< the first wrong word, or the reason; empty if all is well
+    bool is_known = false; ///< whether seeing it was expected
 
     [[nodiscard]] std::string label() const { return label_of(backend, index); }
     [[nodiscard]] bool is_seen() const { return outcome == name_of(DefectSight::seen); }
@@ -138,7 +187,25 @@ ShownRun read_run(const ResultValue& value)
 
 std::string cell_text(const ShownRun& run)
 {
-    return run.is_seen() ? fmt::format("SEEN: {} of {} items", run.wrong, run.items) : run.outcome;
+    if (!run.is_seen()) return run.outcome;
+    return fmt::format("{}: {} of {} items", run.is_known ? "known" : "SEEN", run.wrong, run.items);
+}
+
+/// "defect/loop_of_70000_iterations": its name among test cases and deviations.
+std::string case_name(std::string_view defect)
+{
+    return "defect/" + std::string(defect);
+}
+
+void mark_known(std::vector<ShownRun>& runs, const ResultValue& section)
+{
+    const auto expectations = section.find("expectations");
+    if (!expectations) return;
+    for (const ResultValue& one : expectations->at("deviations").items())
+        for (ShownRun& run : runs)
+            run.is_known = run.is_known ||
+                           (one.at("name").line() == case_name(run.defect) && one.at("device").line() == run.label() &&
+                            one.at("judgement").line() == name_of(Judgement::known_failure));
 }
 
 /// The runs of the first device: one of each defect.
@@ -224,15 +291,57 @@ std::string detail_of(const DefectRun& run)
     return fmt::format("item {} returns {} instead of {}", item, run.first_word, run.defect->expected(item));
 }
 
-CaseOutcome outcome_of(DefectSight sight)
+CaseOutcome outcome_of(const DefectRun& run)
 {
-    switch (sight) {
-    case DefectSight::not_seen: return CaseOutcome::passed;
-    case DefectSight::seen: return CaseOutcome::failed;
-    case DefectSight::skipped: return CaseOutcome::skipped;
-    case DefectSight::error: return CaseOutcome::error;
-    }
-    return CaseOutcome::error;
+    if (run.sight == DefectSight::skipped) return CaseOutcome::skipped;
+    if (!fails(run.judged.judgement)) return CaseOutcome::passed;
+    return run.sight == DefectSight::error ? CaseOutcome::error : CaseOutcome::failed;
+}
+
+/// Why it fails; of an unexpected pass that it is one.
+std::string reason_of(const DefectRun& run)
+{
+    return run.judged.judgement == Judgement::unexpected_pass ? run.judged.text() : detail_of(run);
+}
+
+/// What is judged by name; empty if it simply conforms, or fails without having been expected.
+std::string judged_text(const DefectRun& run)
+{
+    const Judgement judgement = run.judged.judgement;
+    return judgement == Judgement::conforms || judgement == Judgement::failure ? std::string() : run.judged.text();
+}
+
+std::vector<Deviation> deviations_of(const std::vector<DefectRun>& runs)
+{
+    std::vector<Deviation> deviations;
+    for (const DefectRun& run : runs)
+        if (run.judged.judgement != Judgement::conforms)
+            deviations.push_back({case_name(run.defect->name), label_of(run.backend, run.device_index),
+                                  run.device.implementation, run.judged});
+    return deviations;
+}
+
+std::vector<std::string> unmentioned_of(const std::vector<DefectRun>& runs, const Expectations& expectations)
+{
+    std::set<std::string> implementations;
+    for (const DefectRun& run : runs)
+        if (finding_of(run) && !expectations.contains(run.device.implementation))
+            implementations.insert(run.device.implementation);
+    return {implementations.begin(), implementations.end()};
+}
+
+CheckVerdict verdict_on(const std::vector<DefectRun>& runs)
+{
+    std::set<std::string> devices;
+    std::size_t ran = 0;
+    for (const DefectRun& run : runs)
+        if (finding_of(run)) {
+            devices.insert(label_of(run.backend, run.device_index));
+            ++ran;
+        }
+    return verdict_by_expectations(fmt::format("{} on {}", counted(ran, "reduced kernel", "reduced kernels"),
+                                               counted(devices.size(), "device", "devices")),
+                                   deviations_of(runs));
 }
 
 } // namespace
@@ -242,6 +351,7 @@ ShownDefects shown_defects(const ResultValue& section)
     std::vector<ShownRun> runs;
     for (const ResultValue& run : section.at("defects").items())
         runs.push_back(read_run(run));
+    mark_known(runs, section);
     ShownDefects shown{{}, all_runs_table(runs)};
     shown.sheet.table(matrix(runs), 0);
     shown.sheet.gap();
@@ -253,17 +363,23 @@ ShownDefects shown_defects(const ResultValue& section)
     shown.sheet.labelled("Verified", summary(runs));
     for (const ResultValue& sentence : section.at("missing_devices").items())
         shown.sheet.labelled("Missing", printable_text(sentence.text()));
+    shown.sheet.append(expectation_lines(section));
+    shown.sheet.append(verdict_line(section));
     return shown;
 }
 
 Report defect_report(const std::vector<DefectRun>& runs, const std::vector<std::string>& missing,
-                     const Options& options)
+                     const Options& options, const Expectations* expectations)
 {
     nlohmann::json section = result_head(options);
     section["defects"] = nlohmann::json::array();
     for (const DefectRun& run : runs)
         section["defects"].push_back(run_json(run));
     section["missing_devices"] = missing;
+    if (expectations != nullptr) {
+        set_expectations(section, deviations_of(runs), unmentioned_of(runs, *expectations));
+        set_verdict(section, verdict_on(runs));
+    }
     const nlohmann::json json = {{"tetrace", std::move(section)}};
     ShownDefects shown = shown_defects(ResultValue(json, "the defects").at("tetrace"));
     Report report{std::move(shown.sheet), std::move(shown.table), json};
@@ -278,8 +394,7 @@ std::string defect_junit(const std::vector<DefectRun>& runs, const std::string& 
     std::vector<JunitCase> cases;
     for (const DefectRun& run : runs)
         cases.push_back({run.backend, label_of(run.backend, run.device_index), run.device.name, run.device.driver,
-                         "defect/" + std::string(run.defect->name), outcome_of(run.sight), detail_of(run),
-                         run.seconds});
+                         case_name(run.defect->name), outcome_of(run), reason_of(run), run.seconds, judged_text(run)});
     return junit_suite("defects", cases, problem);
 }
 

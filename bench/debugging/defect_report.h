@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bench/expectations/judgement.h"
 #include "bench/options/options.h"
 #include "bench/output/report.h"
 #include "bench/results/result_value.h"
@@ -29,15 +30,22 @@ struct DefectRun {
     std::string reason;                   ///< of skipped and error
     ErrorKind kind = ErrorKind::internal; ///< of error
     double seconds = 0;                   ///< compiling included
+    Judged judged;                        ///< simply conforms if it was skipped
 };
 
 /// Runs every reduced kernel on the devices that the options keep, device after device, in the backends that have them.
-/// A device that fails is an error of its run. Throws as select_rows() does.
+/// A device that fails is an error of its run. expectations: of the runs; null: no defect is expected. Throws as
+/// select_rows() does.
 [[nodiscard]] std::vector<DefectRun> run_defects(const Options& options,
-                                                 const std::vector<Backend*>& backends = all_backends());
+                                                 const std::vector<Backend*>& backends = all_backends(),
+                                                 const Expectations* expectations = nullptr);
 
-/// 1 if a defect was seen; else the code of the first error, 3 if no device ran one, else 0.
+/// 1 if a defect was seen that was not expected, or one that was expected was not seen; else the code of the first
+/// error, unless it was expected, 3 if no device ran one, else 0.
 [[nodiscard]] int exit_code(const std::vector<DefectRun>& runs);
+
+/// What the runs showed, as the expectations of their implementations.
+[[nodiscard]] Expectations expectations_of(const std::vector<DefectRun>& runs);
 
 /// Defects for people, and every run flat.
 struct ShownDefects {
@@ -50,11 +58,12 @@ struct ShownDefects {
 [[nodiscard]] ShownDefects shown_defects(const ResultValue& section);
 
 /// Drivers against defects: a line a device, a column a defect; what each defect is, and the first wrong word of each
-/// that was seen. missing: sentences on backends without a device.
+/// that was seen. missing: sentences on backends without a device. expectations: those that the runs were judged by;
+/// may be null.
 [[nodiscard]] Report defect_report(const std::vector<DefectRun>& runs, const std::vector<std::string>& missing,
-                                   const Options& options);
+                                   const Options& options, const Expectations* expectations = nullptr);
 
-/// One suite, a test case for each device and defect, which fails where the defect is seen. problem: as in junit_xml().
+/// One suite, a test case for each device and defect, which fails where the judgement does. problem: as in junit_xml().
 [[nodiscard]] std::string defect_junit(const std::vector<DefectRun>& runs, const std::string& problem = {});
 
 } // namespace tetrace

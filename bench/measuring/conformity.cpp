@@ -2,6 +2,7 @@
 
 #include "bench/terminal/text.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace tetrace {
@@ -52,7 +53,9 @@ Conformity conformity_of(const RowRecord& row)
     }
 }
 
-std::string conformity_text(const RowRecord& row)
+namespace {
+
+std::string text_of_one(const RowRecord& row)
 {
     const Conformity conformity = conformity_of(row);
     const Traced* result = traced(row);
@@ -63,6 +66,84 @@ std::string conformity_text(const RowRecord& row)
     case Conformity::uncompared: return oracle_text(row);
     default: return std::string(name_of(conformity));
     }
+}
+
+/// How often a row that differs between repetitions showed its worst.
+struct Rate {
+    Finding worst;
+    std::size_t count, of;
+};
+
+std::optional<Rate> rate_of(const RowRecord& row)
+{
+    const auto& all = row.repeated;
+    if (all.empty() || std::ranges::count(all, all.front()) == std::ssize(all)) return std::nullopt;
+    const Finding worst = *std::ranges::max_element(all);
+    return Rate{worst, static_cast<std::size_t>(std::ranges::count(all, worst)), all.size()};
+}
+
+std::uint64_t hash_of_hits(const RowRecord& row)
+{
+    const Traced* const result = traced(row);
+    return result != nullptr ? result->views_hash : 0;
+}
+
+} // namespace
+
+std::string conformity_text(const RowRecord& row)
+{
+    const auto rate = rate_of(row);
+    if (!rate) return text_of_one(row);
+    const char* const what = rate->worst == Finding::other_answers ? "other answers " : "";
+    return fmt::format("{}, {}in {} of {}", text_of_one(row), what, rate->count, rate->of);
+}
+
+std::string rate_text(const RowRecord& row)
+{
+    const auto rate = rate_of(row);
+    return rate ? fmt::format("{} in {} of {}", name_of(rate->worst), rate->count, rate->of) : std::string();
+}
+
+Finding finding_of(const RowRecord& row, bool flawed_passes)
+{
+    if (const auto rate = rate_of(row)) return rate->worst;
+    const Finding shown = value_named<Finding>(name_of(conformity_of(row))).value();
+    return !fails(shown) && fails_check(row, flawed_passes) ? Finding::flawed : shown;
+}
+
+namespace {
+
+RowRecord combined_row(const std::vector<const RowRecord*>& repetitions, bool flawed_passes)
+{
+    std::vector<const RowRecord*> rows;
+    std::ranges::copy_if(repetitions, std::back_inserter(rows),
+                         [&](const RowRecord* row) { return finding_of(*row, flawed_passes) != Finding::skipped; });
+    if (rows.empty()) return *repetitions.front();
+    std::vector<Finding> shown;
+    for (const RowRecord* row : rows) {
+        const Finding own = finding_of(*row, flawed_passes);
+        const bool is_other =
+            !shown.empty() && !fails(own) && own == shown.front() && hash_of_hits(*row) != hash_of_hits(*rows.front());
+        shown.push_back(is_other ? Finding::other_answers : own);
+    }
+    RowRecord worst = *rows.at(static_cast<std::size_t>(std::ranges::max_element(shown) - shown.begin()));
+    worst.repeated = std::move(shown);
+    return worst;
+}
+
+} // namespace
+
+std::vector<RowRecord> combined_rows(const std::vector<std::vector<RowRecord>>& repetitions, bool flawed_passes)
+{
+    if (repetitions.size() == 1) return repetitions.front();
+    std::vector<RowRecord> combined;
+    for (std::size_t i = 0; i < repetitions.front().size(); ++i) {
+        std::vector<const RowRecord*> rows;
+        for (const auto& repetition : repetitions)
+            rows.push_back(&repetition.at(i));
+        combined.push_back(combined_row(rows, flawed_passes));
+    }
+    return combined;
 }
 
 bool fails_check(const RowRecord& row, bool flawed_passes)

@@ -26,7 +26,20 @@ inline constexpr auto enum_names<Conformity> = names_up_to<Conformity::error>("r
 
 [[nodiscard]] Conformity conformity_of(const RowRecord& row);
 
-/// The cell with numbers and self-test findings: "within 2 ulp", "wrong: 12 rays", "not exact: contracts".
+/// What the row shows; of one that differs between repetitions the worst. flawed_passes: as of fails().
+[[nodiscard]] Finding finding_of(const RowRecord& row, bool flawed_passes);
+
+/// Of a row that differs between repetitions how often it showed its worst: "wrong in 2 of 10"; else empty.
+[[nodiscard]] std::string rate_text(const RowRecord& row);
+
+/// The rows of several repetitions of a check as one: of each row the first repetition that shows the worst, with what
+/// each showed. Repetitions without a result count only if all are so. repetitions: at least one, all with the same
+/// rows.
+[[nodiscard]] std::vector<RowRecord> combined_rows(const std::vector<std::vector<RowRecord>>& repetitions,
+                                                   bool flawed_passes);
+
+/// The cell with numbers and self-test findings: "within 2 ulp", "wrong: 12 rays", "not exact: contracts"; of a row
+/// that differs between repetitions with its rate: "wrong: 12 rays, in 2 of 10".
 /// Rows without anything to compare with show the oracle's status.
 [[nodiscard]] std::string conformity_text(const RowRecord& row);
 

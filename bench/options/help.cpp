@@ -85,6 +85,8 @@ const VerbHelp verb_help[] = {
      "other hit is wrong.\n\n"
      "The first differing ray and the first wrong ray of a row are printed in full, with the 'tetrace trace' "
      "command that follows it. --defects runs the reduced kernels of known compiler defects instead.\n\n"
+     "--expect names files of what implementations are known to show, which --write-expect writes: what they list "
+     "passes, and a change in either direction fails. --repeat finds rows that differ from one time to the next.\n\n"
      "Exits with 1 if a device is wrong or not exact. Wrong and lost rays that a method has on openmp, too, bit for "
      "bit, are the method's fault and not the device's: the row is 'flawed', its rays are counted, and the exit code "
      "is 0.\n\n"
@@ -93,6 +95,8 @@ const VerbHelp verb_help[] = {
      "  tetrace check --scene cubes --require opencl,vulkan --junit check.xml\n"
      "  tetrace check --scene bunny --backend vulkan --differences pictures\n"
      "  tetrace check --scene bunny --method all\n"
+     "  tetrace check --scene cubes --write-expect expected\n"
+     "  tetrace check --scene cubes --expect expected --repeat 10\n"
      "  tetrace check --defects --junit defects.xml\n"
      "  tetrace check --scene bunny --camera-set flight --views 0-1281:40 --out check.json\n"},
     {Verb::render, "write pictures",
@@ -188,7 +192,7 @@ const VerbHelp verb_help[] = {
      "and embree are parts of programs and libraries.",
      "  tetrace dump --backend vulkan --method project --layout half32 --out report\n"
      "  tetrace dump --backend opencl --method maria --layout tet80 --math fast --out report\n"},
-    {Verb::compare, "compare results of bench, row by row",
+    {Verb::compare, "compare results of bench, or two of check, row by row",
      "Compares the rows of B.json with those of the same name in A.json: another commit, driver, compiler or machine. "
      "Both were made by 'tetrace bench --out' or 'tetrace reproduce --out' (the exit searches of table5 are rows "
      "too). The head of the output says what differs between them. For each row it prints the ratio of the rates (of "
@@ -206,6 +210,9 @@ const VerbHelp verb_help[] = {
      "not show: the tolerance is for that.\n\n"
      "Three or more results are printed side by side, a column each, with ratios to the first, for the rows that did "
      "the same work; the others are listed with the reason. Verdicts are not given, and the exit code is 0.\n\n"
+     "Two results of 'check' are compared by what they found: 'BECAME WRONG', 'BECAME RIGHT', 'CHANGED' (another "
+     "result, and neither fails, or both do), 'NEW' and 'MISSING'. The first, a new row that fails and a missing one "
+     "exit with 1.\n\n"
      "With two results, exits with 1 if a row is SLOWER by more than the tolerance, FAILED or MISSING (see "
      "--allow-missing). Exits with 2, and names the rows, if all are DIFFERENT.",
      "  tetrace compare before.json after.json\n"

@@ -34,6 +34,8 @@ inline constexpr unsigned reporting = measuring | bit(Verb::build) | bit(Verb::d
 
 /// Of `reproduce` alone.
 [[nodiscard]] std::vector<OptionRow> reproduce_options();
+/// What a check is judged by.
+[[nodiscard]] std::vector<OptionRow> expectation_options();
 /// What becomes of a result.
 [[nodiscard]] std::vector<OptionRow> output_options();
 /// How a run is shared among processes.

@@ -362,7 +362,8 @@ std::vector<OptionRow> judging_options()
          [](Options& o, const std::string& v) { o.tolerance = parse_percent("--tolerance", v) / 100; },
          usual_for(every_verb, "difference in time that does not matter")},
         {"Judging", "--allow-missing", "",
-         "Exit with 0 even if rows that A timed are missing, skipped or unsupported in B. Failed rows still count.",
+         "Exit with 0 even if rows that A timed, or checked, are missing, skipped or unsupported in B. Failed rows still "
+         "count.",
          bit(Verb::compare), false, set(&Options::allow_missing),
          usual_for(every_verb, "rows that B lacks do not fail")},
         {"Pictures", "--picture", "KIND",
@@ -399,8 +400,9 @@ std::vector<OptionRow> report_options()
 std::vector<OptionRow> make_table()
 {
     std::vector<OptionRow> table;
-    for (auto part : {reproduce_options, inspect_options, trace_options, scene_options, row_options, ray_options,
-                      driver_options, judging_options, report_options, sharing_options, output_options})
+    for (auto part :
+         {reproduce_options, inspect_options, trace_options, scene_options, row_options, ray_options, driver_options,
+          judging_options, expectation_options, report_options, sharing_options, output_options})
         for (OptionRow& row : part())
             table.push_back(std::move(row));
     std::stable_partition(table.begin(), table.end(), [](const OptionRow& row) { return row.group != experiments; });

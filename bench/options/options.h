@@ -156,7 +156,10 @@ struct Options {
 
     std::vector<std::string> required; ///< backends that must have a usable device; of `inspect`, targets to be asked
     bool allow_flawed = false;
-    bool defects = false;       ///< of `check`: reduced kernels in place of rows
+    bool defects = false;                                ///< of `check`: reduced kernels in place of rows
+    unsigned repeat = 1;                                 ///< of `check`: how often rows are checked
+    std::vector<std::filesystem::path> expected;         ///< of `check`: files and folders of expectations
+    std::optional<std::filesystem::path> write_expected; ///< of `check`: file or folder of what it showed
     double tolerance = 0.03;    ///< of `compare`, a fraction: a row that is slower by more is a regression
     bool allow_missing = false; ///< of `compare`
     bool clear = false;

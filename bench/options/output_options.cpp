@@ -17,6 +17,26 @@ std::vector<OptionRow> sharing_options()
     };
 }
 
+std::vector<OptionRow> expectation_options()
+{
+    return {
+        {"Expectations", "--expect", "PATH",
+         "What implementations are expected to show: a file, or a folder with a file for each "
+         "(tests/expected/README.md). A failure that it lists passes; a new failure and an unexpected pass exit with "
+         "1. What it does not mention is expected to conform. May be repeated, or a list with commas. Default: all "
+         "conforms.",
+         bit(Verb::check), true, [](Options& o, const std::string& v) { o.expected.emplace_back(v); }},
+        {"Expectations", "--write-expect", "PATH",
+         "Write what this run showed, for --expect: into one file if PATH ends in .json, else into a folder with a "
+         "file for each implementation. What is there is updated. Default: none.",
+         bit(Verb::check), false, set_path("--write-expect", &Options::write_expected)},
+        {"Expectations", "--repeat", "N",
+         "Check all rows N times, 1 to 1000. A row that differs between repetitions fails, with its rate ('wrong in 2 "
+         "of 10'), unless --expect lists it among the flakes. Default: 1.",
+         bit(Verb::check), false, set_count("--repeat", &Options::repeat, 1, 1000)},
+    };
+}
+
 std::vector<OptionRow> output_options()
 {
     return {

@@ -118,17 +118,6 @@ std::string differences_text(const ResultComparison& comparison)
                                : fmt::format("{}.", fmt::join(differences, ", "));
 }
 
-Sheet head_of(const ResultComparison& comparison)
-{
-    Sheet sheet;
-    sheet.labelled("A", source_text(*comparison.before));
-    sheet.labelled("B", source_text(*comparison.after));
-    sheet.labelled("Differ in", differences_text(comparison));
-    for (const std::string& sentence : device_sentences(comparison))
-        sheet.labelled("Device", sentence);
-    return sheet;
-}
-
 /// Each note, for all rows that have it: "FAILED" or "MISSING" of many rows has one cause as a rule.
 Sheet notes_of(const ResultComparison& comparison)
 {
@@ -206,7 +195,7 @@ std::string verdicts_text(double tolerance)
 
 Sheet comparison_sheet(const ResultComparison& comparison, const Options& options)
 {
-    Sheet sheet = head_of(comparison);
+    Sheet sheet = comparison_head(comparison);
     sheet.gap();
     sheet.table(rows_table(comparison));
     sheet.gap();
@@ -222,6 +211,19 @@ Sheet comparison_sheet(const ResultComparison& comparison, const Options& option
         sheet.labelled("B / A", promise_text(comparison));
         sheet.labelled("Verdicts", verdicts_text(comparison.tolerance));
     }
+    return sheet;
+}
+
+} // namespace
+
+Sheet comparison_head(const ResultComparison& comparison)
+{
+    Sheet sheet;
+    sheet.labelled("A", source_text(*comparison.before));
+    sheet.labelled("B", source_text(*comparison.after));
+    sheet.labelled("Differ in", differences_text(comparison));
+    for (const std::string& sentence : device_sentences(comparison))
+        sheet.labelled("Device", sentence);
     return sheet;
 }
 

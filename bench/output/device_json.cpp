@@ -2,6 +2,7 @@
 
 #include "bench/results/result_file.h"
 #include "bench/results/result_value.h"
+#include "bench/results/self_test_json.h"
 #include "core/base/printable.h"
 
 #include <algorithm>
@@ -36,21 +37,6 @@ void each_number(AnyDevice& device, const Visit& visit)
     visit("max_steps", device.max_steps);
 }
 
-/// The same for what a self-test found.
-template <class AnyTest, class Visit>
-void each_finding(AnyTest& test, const Visit& visit)
-{
-    visit("contracts", test.contracts);
-    visit("denormals_kept", test.denormals_kept);
-    visit("division_ulps", test.division_ulps);
-    visit("square_root_ulps", test.square_root_ulps);
-    visit("sums_right", test.sums_right);
-    visit("comparisons_right", test.comparisons_right);
-    visit("integers_right", test.integers_right);
-    visit("conversions_right", test.conversions_right);
-    visit("bits_kept", test.bits_kept);
-}
-
 } // namespace
 
 json device_json(const Device& device)
@@ -76,20 +62,6 @@ Device device_from(const ResultValue& value)
     device.kind = device_kind_of(value);
     each_number(device, [&](const char* key, auto& member) { read_member(member, value, key); });
     return device;
-}
-
-json self_test_json(const SelfTest& test)
-{
-    json object = {{"exact", test.is_exact()}, {"text", test.text()}};
-    each_finding(test, [&](const char* key, const auto& value) { object[key] = value; });
-    return object;
-}
-
-SelfTest self_test_from(const ResultValue& value)
-{
-    SelfTest test;
-    each_finding(test, [&](const char* key, auto& member) { read_member(member, value, key); });
-    return test;
 }
 
 json row_device_json(const RowDevice& device)

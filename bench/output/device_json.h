@@ -14,11 +14,6 @@ namespace tetrace {
 /// The reverse. Throws Error{invalid_input} naming file and key, as the other readers do.
 [[nodiscard]] Device device_from(const ResultValue& value);
 
-/// A self-test as results record it: its fields under their names, "exact", and its line of text.
-[[nodiscard]] nlohmann::json self_test_json(const SelfTest& test);
-
-[[nodiscard]] SelfTest self_test_from(const ResultValue& value);
-
 /// A device that rows ran on, with its microbenchmark and self-tests.
 [[nodiscard]] nlohmann::json row_device_json(const RowDevice& device);
 

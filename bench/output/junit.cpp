@@ -14,20 +14,20 @@ namespace tetrace {
 
 namespace {
 
-CaseOutcome outcome_of(const RowRecord& row, bool failed)
+CaseOutcome outcome_of(const RowRecord& row, const Judged& judged)
 {
-    switch (conformity_of(row)) {
-    case Conformity::error: return CaseOutcome::error;
-    case Conformity::unsupported:
-    case Conformity::skipped: return CaseOutcome::skipped;
-    default: return failed ? CaseOutcome::failed : CaseOutcome::passed;
-    }
+    const Conformity conformity = conformity_of(row);
+    if (fails(judged.judgement)) return conformity == Conformity::error ? CaseOutcome::error : CaseOutcome::failed;
+    const bool has_answer = conformity != Conformity::unsupported && conformity != Conformity::skipped;
+    return has_answer ? CaseOutcome::passed : CaseOutcome::skipped;
 }
 
-std::string reason_text(const RowRecord& row)
+/// has_expectations: whether another result could have been expected.
+std::string reason_text(const RowRecord& row, const Judged& judged, bool has_expectations)
 {
     const std::string reason = reason_of(row);
-    return conformity_text(row) + (reason.empty() ? "" : ": " + reason);
+    const std::string text = conformity_text(row) + (reason.empty() ? "" : ": " + reason);
+    return has_expectations && fails(judged.judgement) ? judged.text() + "; " + text : text;
 }
 
 /// details: of a failure.
@@ -71,13 +71,20 @@ std::string class_name(const std::string& backend, const std::string& device_nam
     return fmt::format("tetrace.{}{}{}", backend, device.empty() ? "" : ".", device);
 }
 
-std::string output_xml(const RowRecord& row)
+std::string output_xml(const std::string& text)
+{
+    return text.empty() ? text : fmt::format("      <system-out>{}</system-out>\n", xml_text(text));
+}
+
+std::string output_xml(const RowRecord& row, const Judged& judged)
 {
     std::string text = "conformity: " + conformity_text(row);
+    if (judged.judgement == Judgement::known_failure || judged.judgement == Judgement::known_flake)
+        text += "\n" + judged.text();
     if (status_of(row) == Status::flawed) text += fmt::format("\n{}: {}", name_of(Status::flawed), reason_of(row));
     const Traced* result = traced(row);
     if (result != nullptr && result->hit_hash != 0) text += "\nhit_hash: " + hash_text(result->hit_hash);
-    return fmt::format("      <system-out>{}</system-out>\n", xml_text(text));
+    return output_xml(text);
 }
 
 std::string case_xml(const std::string& class_name, const std::string& name, double time_s, const std::string& parts)
@@ -86,12 +93,14 @@ std::string case_xml(const std::string& class_name, const std::string& name, dou
                        xml_text(class_name), xml_text(name), time_s, parts);
 }
 
-std::string case_xml(const RowRecord& row, CaseOutcome outcome)
+std::string case_xml(const RowRecord& row, const Judged& judged, bool has_expectations)
 {
+    const CaseOutcome outcome = outcome_of(row, judged);
     const Traced* result = traced(row);
     const std::string details = outcome == CaseOutcome::failed ? differences_text(row) : std::string();
     return case_xml(class_name(row.key.backend, row.device.name), row_name(row.key), result ? result->wall_s : 0.0,
-                    outcome_xml(outcome, reason_text(row), details) + output_xml(row));
+                    outcome_xml(outcome, reason_text(row, judged, has_expectations), details) +
+                        output_xml(row, judged));
 }
 
 struct Suite {
@@ -105,17 +114,16 @@ struct Suite {
     {
         count(test.outcome);
         cases += case_xml(class_name(test.backend, test.device), test.name, test.time_s,
-                          outcome_xml(test.outcome, test.reason, test.reason));
+                          outcome_xml(test.outcome, test.reason, test.reason) + output_xml(test.output));
         time_s += test.time_s;
         if (!test.device.empty()) properties[test.label + ".device"] = test.device;
         if (!test.driver.empty()) properties[test.label + ".driver"] = test.driver;
     }
 
-    void add(const RowRecord& row, bool failed)
+    void add(const RowRecord& row, const Judged& judged, bool has_expectations)
     {
-        const CaseOutcome outcome = outcome_of(row, failed);
-        count(outcome);
-        cases += case_xml(row, outcome);
+        count(outcome_of(row, judged));
+        cases += case_xml(row, judged, has_expectations);
         if (const Traced* result = traced(row)) time_s += result->wall_s;
         const std::string device = device_label(row.key);
         if (!row.device.name.empty()) properties[device + ".device"] = row.device.name;
@@ -186,15 +194,35 @@ std::string document_xml(std::vector<Suite> suites, std::string_view verb)
 
 } // namespace
 
-std::string junit_xml(const std::vector<RowRecord>& rows, const std::vector<bool>& failed, const std::string& problem,
+namespace {
+
+/// Of a device whose self-test was expected to be something.
+JunitCase self_test_case(const JudgedDevice& device)
+{
+    JunitCase test{device.backend, device.label, device.name, device.driver, "self_test", CaseOutcome::passed, {}, 0};
+    for (const Deviation& item : device.self_tests) {
+        test.outcome = CaseOutcome::failed;
+        append_item(test.reason, "; ", item.name + ": " + item.judged.text());
+    }
+    return test;
+}
+
+} // namespace
+
+std::string junit_xml(const std::vector<RowRecord>& rows, const CheckJudgement& judgement, const std::string& problem,
                       std::string_view verb)
 {
     std::vector<Suite> suites;
     if (!problem.empty()) suites.emplace_back(Suite{verb}).add_problem(problem);
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (suites.empty() || suites.back().scene != rows[i].key.scene)
-            suites.push_back(Suite{verb, rows[i].key.scene});
-        suites.back().add(rows[i], failed[i]);
+        if (suites.empty() || suites.back().scene != rows[i].key.scene) suites.push_back(Suite{verb, rows[i].key.scene});
+        suites.back().add(rows[i], judgement.rows[i], judgement.has_expectations);
+    }
+    bool is_first = true;
+    for (const JudgedDevice& device : judgement.devices) {
+        if (!device.has_self_test) continue;
+        if (std::exchange(is_first, false)) suites.push_back(Suite{verb, "self-tests"});
+        suites.back().add(self_test_case(device));
     }
     return document_xml(std::move(suites), verb);
 }

@@ -2,6 +2,7 @@
 
 #include "bench/output/device_json.h"
 #include "bench/output/field_parts.h"
+#include "bench/results/self_test_json.h"
 #include "bench/rows/ray_json.h"
 #include "core/base/hash.h"
 #include "core/base/printable.h"
@@ -138,6 +139,19 @@ auto first_wrong()
         });
 }
 
+/// What each repetition of a check showed.
+auto repetitions()
+{
+    return both(
+        [](const RowRecord& row) {
+            json shown;
+            for (const Finding one : row.repeated)
+                shown.push_back(name_of(one));
+            return shown;
+        },
+        [](RowRecord& row, const ResultValue& value) { read_into(row.repeated, value); });
+}
+
 json reason_or_nothing(const RowRecord& row)
 {
     return text_or_nothing(reason_of(row));
@@ -237,6 +251,9 @@ std::vector<RowField> identity_fields()
          csv("schedule")},
         {"", "status", status_name, recorded("status", required), csv("status")},
         {"", "reason", reason_or_nothing, recorded("text"), csv("reason")},
+        {"", "repeated", repetitions(),
+         recorded(R"({ "type": "array", "minItems": 1, "items": { "$ref": "#/$defs/shown" } })", optional,
+                  "of `check --repeat`: what each repetition showed")},
         {"", "fall_back", if_any(&RowRecord::fall_back),
          recorded("line", optional, "of our BVHs: why it is not the heuristic's best tree")},
         {"", "narrower_packets", narrower_packets,

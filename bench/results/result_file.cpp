@@ -1,14 +1,12 @@
 #include "bench/results/result_file.h"
 
+#include "bench/results/json_file.h"
 #include "core/base/error.h"
 #include "core/base/printable.h"
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
 #include <fmt/format.h>
-#include <fstream>
 #include <set>
 
 namespace tetrace {
@@ -16,66 +14,7 @@ namespace tetrace {
 namespace {
 
 constexpr std::uint64_t oldest_schema_version = 1;
-// The largest result so far has 2.3 MB and 65,000 values. What a value takes in memory its text does not show: 60 MB of
-// "[]," took 1.3 GB.
-constexpr std::size_t max_file = std::size_t{64} << 20;
-constexpr std::size_t max_values = 6'000'000;
-constexpr int deepest = 64;                // results have 12 levels; the library writes a value by a call a level
 constexpr std::size_t longest_name = 1000; // of a row, in bytes
-
-[[noreturn]] void reject_file(const std::filesystem::path& path, ErrorKind kind, const std::string& why)
-{
-    throw Error(kind, fmt::format("reading the result '{}': {}", path.string(), why));
-}
-
-/// In pieces, not by its size: a pipe has none.
-std::string read_bytes(const std::filesystem::path& path)
-{
-    std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) reject_file(path, ErrorKind::missing, "the file does not exist");
-    if (std::filesystem::is_directory(path, ignored)) reject_file(path, ErrorKind::invalid_input, "it is a folder");
-    std::ifstream file(path, std::ios::binary);
-    if (!file) reject_file(path, ErrorKind::invalid_input, std::strerror(errno));
-    std::string bytes;
-    std::vector<char> piece(1 << 16);
-    while (file.read(piece.data(), static_cast<std::streamsize>(piece.size())), file.gcount() > 0) {
-        bytes.append(piece.data(), static_cast<std::size_t>(file.gcount()));
-        if (bytes.size() > max_file)
-            reject_file(path, ErrorKind::invalid_input, "it is larger than 64 MiB, which no result is");
-    }
-    if (file.bad()) reject_file(path, ErrorKind::invalid_input, std::strerror(errno));
-    return bytes;
-}
-
-/// The library's message from its place on; what it says before is its own bookkeeping.
-std::string parse_message(const std::string& what)
-{
-    const std::size_t place = what.find("] ");
-    return place == std::string::npos ? what : what.substr(place + 2);
-}
-
-nlohmann::json parse(const std::filesystem::path& path)
-{
-    using Event = nlohmann::json::parse_event_t;
-    const std::string bytes = read_bytes(path);
-    if (bytes.empty()) reject_file(path, ErrorKind::invalid_input, "it is empty");
-    try {
-        std::size_t values = 0;
-        return nlohmann::json::parse(bytes, [&](int depth, Event event, const nlohmann::json& parsed) {
-            const bool is_value = event == Event::object_start || event == Event::array_start || event == Event::value;
-            if (is_value && ++values > max_values)
-                reject_file(path, ErrorKind::invalid_input, "it has more than 6,000,000 values, which no result has");
-            if (depth > deepest)
-                reject_file(path, ErrorKind::invalid_input, "its values are nested deeper than 64 levels");
-            const bool is_key = depth == 1 && event == Event::key;
-            const bool is_dropped = is_key && (parsed == "benchmarks" || parsed == "context");
-            return !is_dropped;
-        });
-    } catch (const nlohmann::json::exception& problem) {
-        reject_file(path, ErrorKind::invalid_input,
-                    fmt::format("it is not JSON, or was cut off: {}", parse_message(problem.what())));
-    }
-}
 
 std::string line_or_nothing(const ResultValue& object, const char* key)
 {
@@ -287,11 +226,13 @@ ResultFile read_result(const std::filesystem::path& path)
 {
     ResultFile result;
     result.path = path;
-    result.json = parse(path);
+    result.json = read_json(path, "result", {"benchmarks", "context"});
     const auto section = ResultValue(result.json, path.string()).find("tetrace");
     if (!section)
-        reject_file(path, ErrorKind::invalid_input,
-                    "section 'tetrace' is missing, so it is not a result; 'tetrace bench --out FILE.json' writes one");
+        throw Error(ErrorKind::invalid_input,
+                    fmt::format("reading the result '{}': section 'tetrace' is missing, so it is not a result; "
+                                "'tetrace bench --out FILE.json' writes one",
+                                path.string()));
     result.head = read_head(*section);
     // `tetrace scenes` lists other things under the same key.
     if (result.head.verb == "scenes") return result;

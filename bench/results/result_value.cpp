@@ -72,7 +72,7 @@ std::string result_text(const nlohmann::json& value)
 void ResultValue::reject(const std::string& what) const
 {
     throw Error(ErrorKind::invalid_input,
-                fmt::format("reading the result '{}': {}{}{}", file_, key_, key_.empty() ? "" : ": ", what));
+                fmt::format("reading the {} '{}': {}{}{}", what_, file_, key_, key_.empty() ? "" : ": ", what));
 }
 
 void ResultValue::require(bool is, const char* what) const
@@ -99,7 +99,7 @@ std::vector<ResultValue> ResultValue::items() const
     require(value_->is_array(), "an array");
     std::vector<ResultValue> values;
     for (const nlohmann::json& item : *value_)
-        values.push_back({item, file_, fmt::format("{}[{}]", key_, values.size())});
+        values.push_back(part(item, fmt::format("{}[{}]", key_, values.size())));
     return values;
 }
 

@@ -28,8 +28,11 @@ namespace tetrace {
 /// Refers to the JSON that it was made of, which has to outlive it.
 class ResultValue {
 public:
-    /// The whole of a file.
-    ResultValue(const nlohmann::json& value, std::string file) : value_(&value), file_(std::move(file)) {}
+    /// The whole of a file. what: what it is read as, for messages; a literal.
+    ResultValue(const nlohmann::json& value, std::string file, const char* what = "result")
+        : value_(&value), what_(what), file_(std::move(file))
+    {
+    }
 
     [[nodiscard]] ResultValue at(const std::string& key) const;                     ///< of an object that has the key
     [[nodiscard]] std::optional<ResultValue> find(const std::string& key) const;    ///< of an object that may have it
@@ -54,17 +57,20 @@ public:
     [[noreturn]] void reject(const std::string& what) const;
 
 private:
-    ResultValue(const nlohmann::json& value, std::string file, std::string key)
-        : value_(&value), file_(std::move(file)), key_(std::move(key))
+    [[nodiscard]] ResultValue part(const nlohmann::json& value, std::string key) const
     {
+        ResultValue part(value, file_, what_);
+        part.key_ = std::move(key);
+        return part;
     }
     [[nodiscard]] ResultValue member(const std::string& key, const nlohmann::json& value) const
     {
-        return {value, file_, key_.empty() ? key : key_ + "." + key};
+        return part(value, key_.empty() ? key : key_ + "." + key);
     }
     void require(bool is, const char* what) const;
 
     const nlohmann::json* value_;
+    const char* what_;
     std::string file_;
     std::string key_; ///< empty: the whole
 };

@@ -22,6 +22,34 @@ template <>
 inline constexpr auto enum_names<Status> = names_up_to<Status::error>("ok", "flawed", "wrong", "unsupported", "skipped",
                                                                       "error");
 
+/// What a row shows in a check, from best to worst: its conformity (bench/measuring/conformity.h), or why it fails
+/// although that is good. other_answers: right as before, but not the same bits in each repetition. flawed: its
+/// method's wrong rays, on a device whose bits are not openmp's.
+enum class Finding {
+    reference,
+    bit_exact,
+    uncompared,
+    within_ulps,
+    unsupported,
+    skipped,
+    other_answers,
+    flawed,
+    not_exact,
+    wrong,
+    error
+};
+template <>
+inline constexpr auto enum_names<Finding> = names_up_to<Finding::error>("reference", "bit-exact", "not compared",
+                                                                        "within ulps", "unsupported", "skipped",
+                                                                        "other answers", "flawed", "not exact", "wrong",
+                                                                        "error");
+
+/// Whether a check fails by itself where a row shows this.
+[[nodiscard]] constexpr bool fails(Finding shown)
+{
+    return shown >= Finding::other_answers;
+}
+
 /// The first ray on which a backend differs from openmp.
 struct DifferingRay {
     std::uint32_t view = 0, x = 0, y = 0;
@@ -139,6 +167,7 @@ struct RowRecord {
     std::vector<double> latency_samples_s;  ///< device seconds of a pass with a launch for each view
     std::optional<GpuSummary> gpu = {};     ///< of a row on a GPU that reports anything
     std::optional<double> pulse_ratio = {}; ///< of the pulse next to the samples to its fastest, their median
+    std::vector<Finding> repeated = {};     ///< what each repetition of a check showed; empty if there was one
     std::string disturbance = {};           ///< why the rate is not to be trusted, see disturbance_text()
 };
 

@@ -1,5 +1,6 @@
 #include "bench/show/show_report.h"
 
+#include "bench/expectations/check_verdict.h"
 #include "bench/measuring/conformity.h"
 #include "bench/output/bench_report.h"
 #include "bench/output/brief.h"
@@ -75,53 +76,17 @@ Sheet check_sheet(const CheckFindings& found)
     add_table(sheet, self_test_table(rows));
     sheet.append(failure_lines(rows));
     for (const RowRecord& row : rows)
-        sheet.verbatim(differences_text(row));
+        if (!found.known.contains(row_name(row.key))) sheet.verbatim(differences_text(row));
     for (const std::string& sentence : inexact_devices(rows))
         sheet.line(sentence);
+    for (const RowRecord& row : rows)
+        if (const std::string rate = rate_text(row); !rate.empty())
+            sheet.line(fmt::format("{}: differs between repetitions: {}", row_name(row.key), rate));
     sheet.labelled("Verified", verdict_sentence(rows));
     if (found.interrupted) sheet.labelled("Stopped", interrupted_sentence);
     for (const std::string& sentence : found.missing)
         sheet.labelled("Missing", sentence);
     return sheet;
-}
-
-Sheet CheckVerdict::line() const
-{
-    Sheet sheet;
-    sheet.labelled(conforms ? "Conforms" : "FAILED", text);
-    return sheet;
-}
-
-std::optional<CheckVerdict> verdict_of(const std::vector<RowRecord>& rows, bool flawed_passes,
-                                       const std::vector<std::string>& required)
-{
-    std::size_t failed = 0, judged = 0;
-    std::set<std::string> devices, failed_on;
-    for (const RowRecord& row : rows) {
-        const Conformity conformity = conformity_of(row);
-        const bool has_answer = conformity != Conformity::unsupported && conformity != Conformity::skipped;
-        if (!has_answer && std::ranges::find(required, row.key.backend) == required.end()) continue;
-        ++judged;
-        devices.insert(device_label(row.key));
-        if (has_answer && conformity != Conformity::error && !fails_check(row, flawed_passes)) continue;
-        ++failed;
-        failed_on.insert(device_label(row.key));
-    }
-    if (judged == 0) return std::nullopt;
-    const std::size_t others = rows.size() - judged;
-    const std::string end =
-        others == 0 ? "." : fmt::format("; {} more {} no result.", others, others == 1 ? "has" : "have");
-    if (failed == 0)
-        return CheckVerdict{true, fmt::format("{} on {}{}", counted(judged, "row", "rows"),
-                                              counted(devices.size(), "device", "devices"), end)};
-    return CheckVerdict{false, fmt::format("{} of {}, {}on {}{}", failed, counted(judged, "row", "rows"),
-                                           failed > 1 && failed_on.size() == 1 ? "all " : "",
-                                           fmt::join(failed_on, ", "), end)};
-}
-
-void set_verdict(nlohmann::json& section, const std::optional<CheckVerdict>& verdict)
-{
-    if (verdict) section["verdict"] = {{"conforms", verdict->conforms}, {"text", verdict->text}};
 }
 
 namespace {
@@ -183,10 +148,10 @@ RunAgain check_again(const ResultFile& file)
 {
     const ResultValue section = file.section();
     const std::vector<RowRecord> rows = read_rows(file);
-    Sheet sheet = check_sheet(
-        {&rows, scenes_of(section), sentences_at(section, "missing_devices"), section.find("interrupted").has_value()});
-    if (const auto verdict = section.find("verdict"))
-        sheet.append(CheckVerdict{verdict->at("conforms").flag(), verdict->at("text").line()}.line());
+    Sheet sheet = check_sheet({&rows, scenes_of(section), sentences_at(section, "missing_devices"),
+                               section.find("interrupted").has_value(), known_failures(section)});
+    sheet.append(expectation_lines(section));
+    sheet.append(verdict_line(section));
     return {std::move(sheet), check_table(rows, RunOrigin(section))};
 }
 

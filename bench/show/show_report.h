@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct CheckFindings {
     std::vector<nlohmann::json> scenes; ///< as results record them
     std::vector<std::string> missing;   ///< devices, a sentence each
     bool interrupted = false;
+    std::set<std::string> known = {}; ///< names of rows that fail as expected: their rays are not printed
 };
 
 /// What a row's fields are read from, its conformity included.
@@ -28,20 +30,6 @@ struct CheckFindings {
 
 /// What `check` prints, and `show` prints again.
 [[nodiscard]] Sheet check_sheet(const CheckFindings& found);
-
-/// The verdict of a check, and the line that it ends with.
-struct CheckVerdict {
-    bool conforms = true;
-    std::string text; ///< "13 rows on 2 devices.", or "6 of 13 rows, all on opencl."
-
-    [[nodiscard]] Sheet line() const;
-};
-/// Empty if no row was judged. flawed_passes: as of fails_check(). required: backends of which each row must have an
-/// answer.
-[[nodiscard]] std::optional<CheckVerdict> verdict_of(const std::vector<RowRecord>& rows, bool flawed_passes,
-                                                     const std::vector<std::string>& required);
-/// In a result, under "verdict".
-void set_verdict(nlohmann::json& section, const std::optional<CheckVerdict>& verdict);
 
 /// A run again, for people and flat.
 struct RunAgain {

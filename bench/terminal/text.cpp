@@ -21,16 +21,16 @@ namespace {
 
 struct Tint {
     std::string_view code;
-    std::array<std::string_view, 6> beginnings;
+    std::array<std::string_view, 7> beginnings;
 };
 
 constexpr std::string_view end_of_colour = "\x1b[0m";
 
 // Red, yellow, green: colours that terminals show legibly on black and on white.
 constexpr std::array<Tint, 3> tints = {{
-    {"\x1b[31m", {"wrong", "error", "not exact", "FAILED", "SLOWER", "SEEN"}},
+    {"\x1b[31m", {"wrong", "error", "not exact", "FAILED", "SLOWER", "SEEN", "BECAME WRONG"}},
     {"\x1b[33m", {"flawed", "noisy", "UNSURE", "NOISY", "MISSING", "DIFFERENT"}},
-    {"\x1b[32m", {"FASTER"}},
+    {"\x1b[32m", {"FASTER", "BECAME RIGHT"}},
 }};
 
 } // namespace

@@ -72,15 +72,16 @@ BenchResult run_bench(const std::vector<RowKey>& keys, const Options& options, c
 
 namespace {
 
-/// rows: what was measured, also if it then throws.
+/// rows, judgement: what was measured, also if it then throws.
 int bench(const Options& options, const BenchmarkFlags& flags, const std::vector<RowKey>& keys,
-          std::vector<RowRecord>& rows)
+          std::vector<RowRecord>& rows, CheckJudgement& judgement)
 {
     nlohmann::json head = run_head(options, keys);
     if (flags.repetitions) head["repetitions"] = *flags.repetitions;
     const auto journal = open_journal(options, head);
     const BenchResult result = run_bench(keys, options, flags, journal.get());
     rows = result.rows;
+    judgement = judge_answers(rows);
     Report report = bench_report(result, options, result_head(options));
     if (options.junit && !prints_junit(options)) report.sheet.labelled("JUnit", options.junit->string());
     // Google Benchmark has already written its own format to standard output, if it was asked to.
@@ -90,7 +91,7 @@ int bench(const Options& options, const BenchmarkFlags& flags, const std::vector
         deliver_to_file(options, report);
     if (result.interrupted) return end_interrupted();
     end_journal(journal.get(), options);
-    require_judged(rows, options.required);
+    require_judged(rows, judgement, options.required);
     require_answers(rows, "measured");
     return exit_code(rows, true);
 }
@@ -123,11 +124,12 @@ int bench_command(const Options& options)
     check_columns(options, bench_columns());
     if (!flags.out.empty()) check_writable("--benchmark_out", flags.out);
     std::vector<RowRecord> rows;
-    return with_junit(rows, options, [&] {
+    CheckJudgement judgement;
+    return with_junit(rows, judgement, options, [&] {
         require_devices(options.required); // first: its reason for an empty selection is better
         const auto keys = select();
         require_selected(keys, options);
-        return bench(options, flags, keys, rows);
+        return bench(options, flags, keys, rows, judgement);
     });
 }
 

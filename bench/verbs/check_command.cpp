@@ -1,3 +1,5 @@
+#include "bench/expectations/check_verdict.h"
+#include "bench/expectations/expectation_files.h"
 #include "bench/measuring/conformity.h"
 #include "bench/measuring/ray_walks.h"
 #include "bench/measuring/run_journal.h"
@@ -21,9 +23,12 @@ namespace tetrace {
 
 namespace {
 
-/// Without pictures where none were asked for.
+/// Without pictures, expectations and their target where none were asked for.
 struct Checked {
+    std::optional<Expectations> expectations;
+    std::optional<ExpectationTarget> target;
     std::vector<RowRecord> rows;
+    CheckJudgement judgement;           ///< of the rows
     std::vector<nlohmann::json> scenes; ///< as results record them
     std::vector<std::string> missing;
     std::unique_ptr<DifferencePictures> pictures;
@@ -32,7 +37,7 @@ struct Checked {
 /// Empty if the check was interrupted.
 std::optional<CheckVerdict> verdict_of(const Checked& checked, const Options& options)
 {
-    return is_interrupted() ? std::nullopt : verdict_of(checked.rows, options.allow_flawed, options.required);
+    return is_interrupted() ? std::nullopt : verdict_of(checked.rows, checked.judgement, options.required);
 }
 
 nlohmann::json check_json(const Checked& checked, const Options& options)
@@ -45,16 +50,21 @@ nlohmann::json check_json(const Checked& checked, const Options& options)
         section["rows"].push_back(row_json(check_facts(row)));
     section["missing_devices"] = checked.missing;
     set_verdict(section, verdict_of(checked, options));
+    if (checked.expectations && !is_interrupted())
+        set_expectations(section, checked.judgement.deviations, unmentioned_of(checked.judgement));
     return {{"tetrace", std::move(section)}};
 }
 
-Report check_report(const Checked& checked, const Options& options)
+/// written: the files of --write-expect.
+Report check_report(const Checked& checked, const std::vector<std::filesystem::path>& written, const Options& options)
 {
     const auto& rows = checked.rows;
     nlohmann::json json = check_json(checked, options);
-    const RunOrigin origin(ResultValue(json, "the result").at("tetrace"));
-    Report report{check_sheet({&rows, checked.scenes, checked.missing, is_interrupted()}), check_table(rows, origin),
-                  std::move(json)};
+    const ResultValue section = ResultValue(json, "the check").at("tetrace");
+    Report report{{}, check_table(rows, RunOrigin(section)), {}};
+    report.sheet = check_sheet({&rows, checked.scenes, checked.missing, is_interrupted(), known_failures(section)});
+    report.sheet.append(expectation_lines(section));
+    report.json = std::move(json);
     const auto verdict = verdict_of(checked, options);
     const Sheet last = verdict ? verdict->line() : Sheet();
     Sheet document = report.sheet;
@@ -63,6 +73,8 @@ Report check_report(const Checked& checked, const Options& options)
     if (checked.pictures != nullptr)
         for (const auto& file : checked.pictures->files())
             report.sheet.labelled("Picture", file.string());
+    for (const auto& file : written)
+        report.sheet.labelled("Written", file.string());
     if (options.junit && !prints_junit(options)) report.sheet.labelled("JUnit", options.junit->string());
     if (options.out) report.sheet.labelled("Result", options.out->string());
     report.sheet.append(last); // after the names of files
@@ -90,6 +102,37 @@ Options with_default_layouts(Options options)
     return options;
 }
 
+/// Does the check as often as --repeat says. An interrupted repetition counts only if it is the first.
+void verify_all(const std::vector<RowKey>& keys, const Options& options, Journal* journal, Checked& checked)
+{
+    std::vector<std::vector<RowRecord>> repetitions;
+    while (repetitions.size() < options.repeat) {
+        Budget budget(options.budget_s / options.repeat);
+        SceneRows run = open_and_verify(keys, options,
+                                        [&](const SeenImage& image) {
+                                            if (checked.pictures != nullptr) checked.pictures->see(image);
+                                        },
+                                        {journal, nullptr, nullptr, &budget});
+        if (is_interrupted() && !repetitions.empty()) break;
+        for (RowRun& row : run.rows)
+            note_walks(row);
+        repetitions.push_back(records_of(run.rows));
+        checked.scenes = scene_records(run, options);
+        if (is_interrupted()) break;
+    }
+    checked.rows = combined_rows(repetitions, options.allow_flawed);
+    checked.judgement =
+        judge_rows(checked.rows, checked.expectations ? &*checked.expectations : nullptr, options.allow_flawed);
+}
+
+std::vector<std::filesystem::path> write_expectations(Checked& checked, const Options& options)
+{
+    if (!checked.target) return {};
+    if (!is_interrupted()) return checked.target->write(expectations_of(checked.rows, options.allow_flawed));
+    say("tetrace: --write-expect: nothing is written, because the check was interrupted");
+    return {};
+}
+
 /// checked: also what is done if the check ends early.
 int check(const Options& options, Checked& checked)
 {
@@ -101,28 +144,20 @@ int check(const Options& options, Checked& checked)
         say(sentence);
     checked.missing = missing_devices(options);
     if (options.picture_folder) checked.pictures = std::make_unique<DifferencePictures>(*options.picture_folder);
-    const auto journal = open_journal(options, run_head(options, keys));
+    // A journal has each view once.
+    const auto journal = options.repeat > 1 ? nullptr : open_journal(options, run_head(options, keys));
     if (journal != nullptr) say_how_to_go_on(options);
-    Budget budget(options.budget_s);
-    SceneRows run = open_and_verify(keys, options,
-                                    [&](const SeenImage& image) {
-                                        if (checked.pictures != nullptr) checked.pictures->see(image);
-                                    },
-                                    {journal.get(), nullptr, nullptr, &budget});
-    for (RowRun& row : run.rows)
-        note_walks(row);
-    checked.rows = records_of(run.rows);
-    checked.scenes = scene_records(run, options);
-    const auto& rows = checked.rows;
+    verify_all(keys, options, journal.get(), checked);
+    const auto written = write_expectations(checked, options);
     if (!prints_junit(options))
-        deliver(options, check_report(checked, options));
+        deliver(options, check_report(checked, written, options));
     else if (options.out)
-        deliver_to_file(options, check_report(checked, options));
+        deliver_to_file(options, check_report(checked, written, options));
     if (is_interrupted()) return end_interrupted();
     end_journal(journal.get(), options);
-    require_judged(rows, options.required);
-    require_answers(rows, "checked");
-    return exit_code(rows, [&](const RowRecord& row) { return fails_check(row, options.allow_flawed); });
+    require_judged(checked.rows, checked.judgement, options.required);
+    require_answers(checked.rows, "checked");
+    return exit_code(checked.rows, checked.judgement);
 }
 
 int list_selected(const Options& options)
@@ -149,24 +184,25 @@ void require_selected(const std::vector<RowKey>& keys, const Options& options)
                                     name, options.verb == Verb::check ? "check" : "bench"));
 }
 
-void require_judged(const std::vector<RowRecord>& rows, const std::vector<std::string>& backends)
+void require_judged(const std::vector<RowRecord>& rows, const CheckJudgement& judgement,
+                    const std::vector<std::string>& backends)
 {
-    for (const RowRecord& row : rows) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const RowRecord& row = rows[i];
         const bool required = std::ranges::find(backends, row.key.backend) != backends.end();
         const Status status = status_of(row);
-        if (required && (status == Status::skipped || status == Status::unsupported))
+        if (required && (status == Status::skipped || status == Status::unsupported) &&
+            !judgement.rows[i].is_as_expected())
             throw Error(ErrorKind::missing, fmt::format("--require {}: {} is {}: {}", row.key.backend,
                                                         row_name(row.key), name_of(status), reason_of(row)));
     }
 }
 
-void write_junit(const std::vector<RowRecord>& rows, const Options& options, const std::string& problem)
+void write_junit(const std::vector<RowRecord>& rows, const CheckJudgement& judgement, const Options& options,
+                 const std::string& problem)
 {
     if (!options.junit) return;
-    std::vector<bool> failed;
-    for (const RowRecord& row : rows)
-        failed.push_back(options.verb == Verb::check ? fails_check(row, options.allow_flawed) : fails(row, true));
-    std::string xml = junit_xml(rows, failed, problem, name_of(options.verb));
+    std::string xml = junit_xml(rows, judgement, problem, name_of(options.verb));
     if (options.anonymous) xml = anonymous_text(xml, options);
     if (prints_junit(options))
         print(xml);
@@ -174,37 +210,59 @@ void write_junit(const std::vector<RowRecord>& rows, const Options& options, con
         write_whole(*options.junit, xml);
 }
 
-int with_junit(const std::vector<RowRecord>& rows, const Options& options, const std::function<int()>& work)
+int with_junit(const std::vector<RowRecord>& rows, const CheckJudgement& judgement, const Options& options,
+               const std::function<int()>& work)
 {
     if (options.junit && !prints_junit(options)) check_writable("--junit", *options.junit);
     int code = 0;
     try {
         code = work();
     } catch (const Error& error) {
-        write_junit(rows, options, error.what());
+        write_junit(rows, judgement, options, error.what());
         throw;
     }
     const bool interrupted = code == exit_code(ErrorKind::interrupted);
-    write_junit(rows, options,
+    write_junit(rows, judgement, options,
                 interrupted ? fmt::format("the {} was interrupted: not all views were traced", name_of(options.verb))
                             : "");
     return code;
 }
 
+namespace {
+
+/// What does not go together.
+void require_whole_rows(const Options& options)
+{
+    const auto reject = [](const char* what) { throw Error(ErrorKind::usage, what); };
+    const bool is_shard = !shard_of(options).is_whole();
+    if (options.resume && options.picture_folder)
+        reject("--resume: --differences would lack the pictures of views that were traced before; "
+               "leave one of them out");
+    if (options.repeat > 1 && options.resume)
+        reject("--repeat: a journal has each view once, so repetitions cannot be resumed; leave out --resume");
+    if (options.repeat > 1 && options.defects)
+        reject("--repeat repeats rows, and --defects has none; leave one of them out");
+    if (options.repeat > 1 && is_shard) reject("--repeat: shards have no repetitions; leave out --shard");
+    if (is_shard && (!options.expected.empty() || options.write_expected))
+        reject("--expect and --write-expect are about whole rows, and a shard has some of their views; leave out "
+               "--shard");
+}
+
+} // namespace
+
 int check_command(const Options& asked)
 {
     const Options options = with_default_layouts(asked);
     if (options.list) return list_selected(options);
+    require_whole_rows(options);
     if (options.defects) return check_defects(options);
-    if (options.resume && options.picture_folder)
-        throw Error(ErrorKind::usage,
-                    "--resume: --differences would lack the pictures of views that were traced before; "
-                    "leave one of them out");
     check_output(options);
     const StopWhenInterrupted stop;
     if (options.junit || options.out) something_to_keep(); // also where a CI's time ends before the first view
     Checked checked;
-    return with_junit(checked.rows, options, [&] { return check(options, checked); });
+    if (!options.expected.empty()) checked.expectations = read_expectations(options.expected);
+    if (options.write_expected) checked.target.emplace(*options.write_expected);
+    return with_junit(checked.rows, checked.judgement, options, [&] { return check(options, checked); });
 }
 
 } // namespace tetrace

@@ -1,4 +1,5 @@
 #include "bench/debugging/defect_report.h"
+#include "bench/expectations/expectation_files.h"
 #include "bench/options/identity.h"
 #include "bench/rows/rows.h"
 #include "bench/terminal/progress.h"
@@ -38,11 +39,19 @@ int check_defects(const Options& options)
 {
     check_output(options);
     if (options.junit && !prints_junit(options)) check_writable("--junit", *options.junit);
+    std::optional<Expectations> given;
+    if (!options.expected.empty()) given = read_expectations(options.expected);
+    const Expectations* const expectations = given ? &*given : nullptr;
+    std::optional<ExpectationTarget> target;
+    if (options.write_expected) target.emplace(*options.write_expected);
     std::vector<DefectRun> runs;
     try {
         require_devices(options.required);
-        runs = run_defects(options);
-        const Report report = defect_report(runs, missing_devices(options), options);
+        runs = run_defects(options, all_backends(), expectations);
+        Report report = defect_report(runs, missing_devices(options), options, expectations);
+        if (target)
+            for (const auto& file : target->write(expectations_of(runs)))
+                report.sheet.labelled("Written", file.string());
         if (!prints_junit(options))
             deliver(options, report);
         else if (options.out)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bench/expectations/judgement.h"
 #include "bench/options/benchmark_flags.h"
 #include "bench/options/options.h"
 #include "bench/output/bench_report.h"
@@ -32,9 +33,10 @@ int merge_command(const Options& options);
 [[nodiscard]] BenchResult run_bench(const std::vector<RowKey>& keys, const Options& options,
                                     const BenchmarkFlags& flags, Journal* journal);
 
-/// Throws Error{missing} naming the first row of a required backend that has not been judged: all its rows were
-/// selected, but none ran.
-void require_judged(const std::vector<RowRecord>& rows, const std::vector<std::string>& backends);
+/// Throws Error{missing} naming the first row of a required backend that has not been judged, unless that is expected:
+/// all its rows were selected, but none ran. judgement: of these rows.
+void require_judged(const std::vector<RowRecord>& rows, const CheckJudgement& judgement,
+                    const std::vector<std::string>& backends);
 
 /// `check --defects`. options: with the default layouts of check.
 int check_defects(const Options& options);
@@ -53,12 +55,14 @@ void require_selected(const std::vector<RowKey>& keys, const Options& options);
 
 /// Whether --junit is for standard output.
 [[nodiscard]] bool prints_junit(const Options& options);
-/// Writes the file of --junit where it was asked for. problem: why the run ended early, or fails although no row does;
-/// empty where neither is so.
-void write_junit(const std::vector<RowRecord>& rows, const Options& options, const std::string& problem = {});
+/// Writes the file of --junit where it was asked for. judgement: of these rows. problem: why the run ended early, or
+/// fails although no row does; empty where neither is so.
+void write_junit(const std::vector<RowRecord>& rows, const CheckJudgement& judgement, const Options& options,
+                 const std::string& problem = {});
 /// Does a verb's work, whose exit code it returns, and writes the file of --junit, also if the work ends early: whoever
-/// reads only the XML must not take a run without a result for a good one. rows: filled by the work.
-int with_junit(const std::vector<RowRecord>& rows, const Options& options, const std::function<int()>& work);
+/// reads only the XML must not take a run without a result for a good one. rows, judgement: filled by the work.
+int with_junit(const std::vector<RowRecord>& rows, const CheckJudgement& judgement, const Options& options,
+               const std::function<int()>& work);
 
 /// What a long run says where it is interrupted and keeps nothing: how to begin again. Empty for a short one.
 [[nodiscard]] std::string words_when_begun(const Options& options);

@@ -1,6 +1,6 @@
 #include "bench/options/identity.h"
-#include "bench/output/device_json.h"
 #include "bench/output/report.h"
+#include "bench/results/self_test_json.h"
 #include "bench/rows/physical_device.h"
 #include "bench/rows/rows.h"
 #include "bench/terminal/progress.h"

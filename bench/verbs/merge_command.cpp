@@ -1,4 +1,4 @@
-#include "bench/measuring/conformity.h"
+#include "bench/expectations/check_verdict.h"
 #include "bench/merging/merged_rows.h"
 #include "bench/output/bench_report.h"
 #include "bench/output/check_matrix.h"
@@ -94,9 +94,10 @@ Merged merged_bench(const Shards& shards, const Options& options)
         result.measurement.samples =
             std::max(result.measurement.samples, static_cast<unsigned>(row.samples_s.size() / runs));
     }
-    write_junit(result.rows, options);
+    const CheckJudgement judgement = judge_answers(result.rows);
+    write_junit(result.rows, judgement, options);
     return {bench_report(result, options, head_of(shards, options)), exit_code(result.rows, true), error_of([&] {
-                require_judged(result.rows, options.required);
+                require_judged(result.rows, judgement, options.required);
                 require_answers(result.rows, "measured");
             })};
 }
@@ -115,16 +116,16 @@ Merged merged_check(const Shards& shards, const Options& options)
     section["missing_devices"] = missing;
     Report report{
         check_sheet({&rows, scenes, missing}), check_table(rows, RunOrigin(ResultValue(section, "the result"))), {}};
-    const auto verdict = verdict_of(rows, options.allow_flawed, options.required);
+    const CheckJudgement judgement = judge_rows(rows, nullptr, options.allow_flawed);
+    const auto verdict = verdict_of(rows, judgement, options.required);
     set_verdict(section, verdict);
     if (verdict) report.sheet.append(verdict->line());
     report.json["tetrace"] = std::move(section);
     report.markdown = report.sheet.markdown();
     if (options.out) report.sheet.labelled("Result", options.out->string());
-    write_junit(rows, options);
-    const int code = exit_code(rows, [&](const RowRecord& row) { return fails_check(row, options.allow_flawed); });
-    return {std::move(report), code, error_of([&] {
-                require_judged(rows, options.required);
+    write_junit(rows, judgement, options);
+    return {std::move(report), exit_code(rows, judgement), error_of([&] {
+                require_judged(rows, judgement, options.required);
                 require_answers(rows, "checked");
             })};
 }

@@ -58,7 +58,8 @@ std::string words_when_begun(const Options& options)
     const char* kept = options.verb == Verb::build    ? "scenes that were built before are in the cache"
                        : options.verb == Verb::render ? "pictures that were written before are whole"
                                                       : "an earlier result is unchanged";
-    const bool resumes = options.verb == Verb::bench || options.verb == Verb::check || options.verb == Verb::reproduce;
+    const bool resumes = options.verb == Verb::bench || options.verb == Verb::reproduce ||
+                         (options.verb == Verb::check && options.repeat == 1 && !options.defects);
     const char* hint = resumes && !options.out ? "; with --out FILE.json, --resume can go on" : "";
     return fmt::format("tetrace: interrupted; {}. To begin again: {}{}", kept, command_of(command_line()), hint);
 }

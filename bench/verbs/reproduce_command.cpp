@@ -140,7 +140,7 @@ int reproduce_rivals(const Options& asked)
     deliver(options, rival_report(result, tables, options));
     if (result.interrupted) return end_interrupted();
     end_journal(journal.get(), options);
-    require_judged(result.rows, options.required);
+    require_judged(result.rows, judge_answers(result.rows), options.required);
     require_answers(result.rows, "measured");
     return exit_code(result.rows, true);
 }
@@ -180,9 +180,12 @@ int reproduce_command(const Options& asked)
     deliver(options, reproduction_report(all, options));
     if (is_interrupted()) return end_interrupted();
     end_journal(keeping.journal.get(), options);
+    const auto require_of = [&](const std::vector<RowRecord>& rows) {
+        require_judged(rows, judge_answers(rows), options.required);
+    };
     for (const SceneRun& run : all.runs)
-        require_judged(records_of(run.rows), options.required);
-    if (all.searches) require_judged(records_of(all.searches->rows), options.required);
+        require_of(records_of(run.rows));
+    if (all.searches) require_of(records_of(all.searches->rows));
     require_any_answer(all);
     return rows_exit_code(all);
 }

@@ -78,6 +78,38 @@ TEST(DefectRuns, fail_where_one_item_is_wrong_and_name_it)
     EXPECT_TRUE(contains(xml, "classname=\"tetrace.bad.a-device\" name=\"defect/value_after_divergent_loop\"")) << xml;
 }
 
+TEST(DefectRuns, that_show_what_is_known_pass_and_changes_in_either_direction_fail)
+{
+    Device device = some_device();
+    device.implementation = "some-1.2";
+    Driver driver("bad", device);
+    driver.wrong = loop;
+    const Expectations known = expectations_of(runs_of(driver));
+    ASSERT_EQ(known.at("some-1.2").defects.at(loop), DefectFinding::wrong);
+    const auto judged = [&] { return run_defects({}, {&driver}, &known); };
+    const auto text = [&] { return defect_report(judged(), {}, {}, &known).sheet.text(); };
+
+    EXPECT_EQ(exit_code(judged()), 0);
+    EXPECT_TRUE(contains(text(), "Conforms  3 reduced kernels on 1 device, 1 failure as expected.")) << text();
+    EXPECT_TRUE(contains(text(), "known: 1 of 16 items")) << text();
+    EXPECT_TRUE(contains(defect_junit(judged()), "failures=\"0\" errors=\"0\""));
+
+    driver.wrong = "";
+    EXPECT_EQ(exit_code(judged()), 1);
+    EXPECT_TRUE(
+        contains(text(), "defect/value_after_divergent_loop on bad: unexpected pass: expected wrong, shows right"))
+        << text();
+    EXPECT_TRUE(contains(defect_junit(judged()), "<failure message=\"unexpected pass: expected wrong, shows right\">"));
+
+    driver.wrong = "steps_of_nested_loops";
+    EXPECT_EQ(exit_code(judged()), 1);
+    EXPECT_TRUE(contains(text(), "FAILED    1 new failure, 1 unexpected pass in 3 reduced kernels on 1 device."))
+        << text();
+
+    driver.wrong = loop, driver.fails = "steps_of_nested_loops";
+    EXPECT_EQ(exit_code(judged()), exit_code(ErrorKind::driver));
+}
+
 TEST(DefectRuns, of_a_driver_that_crashes_are_errors_and_the_next_ones_run)
 {
     Driver driver("crashing");

@@ -1,4 +1,5 @@
-// Options, results, journals, cameras, pictures and the messages of drivers' processes.
+// Options, results, expectations, journals, cameras, pictures and the messages of drivers' processes.
+#include "bench/expectations/expectation_files.h"
 #include "bench/measuring/image_record.h"
 #include "bench/measuring/journal.h"
 #include "bench/options/benchmark_flags.h"
@@ -41,6 +42,15 @@ void read_result_file(std::string_view bytes)
     const MemoryFile file(bytes);
     may_refuse([&] { (void)result_text(read_result(file.path()).json); });
     may_refuse([&] { (void)read_result(file.path()); });
+}
+
+void read_expectation_file(std::string_view bytes)
+{
+    const MemoryFile file(bytes);
+    may_refuse([&] {
+        for (const auto& [name, one] : read_expectations({file.path()}))
+            (void)expectation_json(one).dump();
+    });
 }
 
 void read_camera_file(std::string_view bytes)
@@ -113,8 +123,9 @@ void read_message(std::string_view bytes)
     }
 }
 
-constexpr std::array<Target, 6> targets = {{{"options", read_options},
+constexpr std::array<Target, 7> targets = {{{"options", read_options},
                                             {"result", read_result_file},
+                                            {"expectation", read_expectation_file},
                                             {"cameras", read_camera_file},
                                             {"picture", read_picture_file},
                                             {"journal", read_journal_file},

@@ -2,6 +2,7 @@
 #include "tests/support/program_fixture.h"
 
 #include <csignal>
+#include <regex>
 
 using namespace tetrace;
 using namespace tetrace::test;
@@ -25,6 +26,9 @@ protected:
                    " --backend openmp,opencl --scene cubes --resolution 4 --size 24 --camera-set smoke --threads 2 "
                    "--method maria");
     }
+
+    /// With a blank where a line was broken.
+    static std::string unwrapped(const std::string& text) { return std::regex_replace(text, std::regex("\\s+"), " "); }
 
     std::string crash_ = "was ended by signal 6 (SIGABRT, Aborted) while ";
 };
@@ -158,5 +162,53 @@ TEST_F(DriverFaults, garbage_and_nan_in_results_are_wrong)
         EXPECT_EQ(ended.code, 1) << fault << ended.errors;
         EXPECT_TRUE(contains(ended.out, "wrong")) << fault;
     }
+}
+
+TEST_F(DriverFaults, known_failure_passes_and_its_absence_is_an_unexpected_pass)
+{
+    if (!has("opencl")) GTEST_SKIP() << "an OpenCL device is missing";
+    const std::string check = "check --views 0 --layout tet80 ", fault = "read:2 garbage";
+    EXPECT_EQ(run_faulty(fault, check + "--write-expect known.json").code, 1);
+    const Ended known = run_faulty(fault, check + "--expect known.json --junit check.xml");
+    EXPECT_EQ(known.code, 0) << known.out << known.errors;
+    EXPECT_TRUE(known.out.ends_with("Conforms  2 rows on 2 devices, 1 failure as expected.\n")) << known.out;
+    EXPECT_TRUE(contains(file("check.xml"), "known failure: wrong")) << file("check.xml");
+    EXPECT_FALSE(contains(file("check.xml"), "<failure"));
+
+    const Ended passes = run_faulty("none", check + "--expect known.json --junit check.xml --out check.json");
+    EXPECT_EQ(passes.code, 1) << passes.out << passes.errors;
+    const std::string judged = "unexpected pass: expected wrong, shows bit-exact";
+    const std::string verdict = "FAILED    1 unexpected pass in 2 rows on 2 devices.\n";
+    EXPECT_TRUE(contains(unwrapped(passes.out), "cdt/maria/tet80/cubes/primary/math:exact/api:opencl: " + judged))
+        << passes.out;
+    EXPECT_TRUE(passes.out.ends_with(verdict)) << passes.out;
+    EXPECT_TRUE(contains(file("check.xml"), "<failure message=\"" + judged)) << file("check.xml");
+    const std::string shown = run("show check.json").out;
+    EXPECT_TRUE(contains(unwrapped(shown), judged)) << shown;
+    EXPECT_TRUE(shown.ends_with(verdict)) << shown;
+
+    // Nothing of OpenCL is in a file that only has openmp.
+    write_file(folder_ / "other.json", R"({"openmp": {"rows": {"tiles": "reference"}}})");
+    const Ended other = run_faulty("none", check + "--expect other.json");
+    EXPECT_EQ(other.code, 0) << other.out;
+    EXPECT_TRUE(contains(other.out, "Unknown   no file of --expect mentions pocl-")) << other.out;
+    EXPECT_EQ(run_faulty(fault, check + "--expect other.json").code, 1);
+}
+
+TEST_F(DriverFaults, failure_in_one_of_several_repetitions_is_a_flake_with_its_rate)
+{
+    if (!has("opencl")) GTEST_SKIP() << "an OpenCL device is missing";
+    // The driver's process goes on from one repetition to the next, so its second read is in the first of them.
+    const std::string check = "check --views 0 --layout tet80 --repeat 3 ", fault = "read:2 garbage";
+    const Ended flaky = run_faulty(fault, check + "--write-expect known.json --out check.json --junit check.xml");
+    EXPECT_EQ(flaky.code, 1) << flaky.out << flaky.errors;
+    EXPECT_TRUE(contains(flaky.out, "api:opencl: differs between repetitions: wrong in 1 of 3")) << flaky.out;
+    EXPECT_TRUE(contains(file("check.json"), R"("repeated":["wrong","bit-exact","bit-exact"])")) << file("check.json");
+    EXPECT_TRUE(contains(file("check.xml"), "in 1 of 3")) << file("check.xml");
+    EXPECT_TRUE(contains(run("show check.json").out, "differs between repetitions: wrong in 1 of 3"));
+    const Ended known = run_faulty(fault, check + "--expect known.json");
+    EXPECT_EQ(known.code, 0) << known.out << known.errors;
+    EXPECT_TRUE(known.out.ends_with("Conforms  2 rows on 2 devices, 1 known flake.\n")) << known.out;
+    EXPECT_EQ(run("check --repeat 2 --resume --out check.json").code, 2);
 }
 #endif

@@ -1,8 +1,8 @@
 #include "bench/output/junit.h"
 
+#include "bench/expectations/check_verdict.h"
 #include "bench/measuring/conformity.h"
 #include "bench/measuring/view_recorder.h"
-#include "bench/show/show_report.h"
 #include "bench/terminal/text.h"
 #include "scenes/procedural.h"
 #include "tests/support/temporary_folder.h"
@@ -55,7 +55,7 @@ TEST(Junit, rows_without_an_answer_are_skipped_or_errors_with_their_reason)
     rows.push_back(skipped_row("buffers of 3 < 4 & 5 \x01 GB"));
     rows.push_back(skipped_row(""));
     rows[1].outcome = Failed{ErrorKind::internal, "device lost"};
-    const std::string xml = junit_xml(rows, {false, false});
+    const std::string xml = junit_xml(rows, judge_rows(rows, nullptr, false));
     EXPECT_TRUE(contains(xml, "<testsuites name=\"tetrace check\" tests=\"2\" failures=\"0\" errors=\"1\">"));
     EXPECT_TRUE(contains(xml, "errors=\"1\" skipped=\"1\" time="));
     EXPECT_TRUE(contains(xml, "<skipped message=\"unsupported: buffers of 3 &lt; 4 &amp; 5 ? GB\"/>"));
@@ -73,7 +73,7 @@ TEST(Junit, a_check_without_a_result_is_a_case_in_error)
 
 TEST(Junit, suites_are_named_after_the_verb)
 {
-    const std::string xml = junit_xml({skipped_row("none")}, {false}, "no time", "bench");
+    const std::string xml = junit_xml({skipped_row("none")}, judge_answers({skipped_row("none")}), "no time", "bench");
     EXPECT_TRUE(contains(xml, "<testsuites name=\"tetrace bench\""));
     EXPECT_TRUE(contains(xml, "classname=\"tetrace.bench\" name=\"has a result\""));
     expect_valid(xml);
@@ -87,7 +87,7 @@ TEST(Junit, classes_have_no_version_and_properties_have_them)
         rows[0].key.backend = "vulkan";
         rows[0].device.name = name;
         rows[0].device.driver = driver;
-        return junit_xml(rows, {false});
+        return junit_xml(rows, judge_rows(rows, nullptr, false));
     };
     for (const char* const name : {"llvmpipe (LLVM 15.0.6, 256 bits)", "llvmpipe (LLVM 19.1.7, 128 bits)"})
         EXPECT_TRUE(contains(xml_of(name, ""), "classname=\"tetrace.vulkan.llvmpipe\""));
@@ -114,7 +114,7 @@ TEST(Junit, a_wrong_row_is_a_failure_that_shows_the_first_difference)
     result.compared = true;
     result.different = 1;
     result.first_different = DifferingRay{0, 8, 8, {0, 7, 1, 0, 0, 3}, {1, 8, 1, 0, 0, 4}};
-    const std::string xml = junit_xml(rows, {true});
+    const std::string xml = junit_xml(rows, judge_rows(rows, nullptr, false));
     EXPECT_TRUE(contains(xml, "<failure message=\"wrong: 1 ray: 1 different from openmp&apos;s\">"));
     EXPECT_TRUE(contains(xml, "the first at view 0, pixel (8, 8)"));
     EXPECT_TRUE(contains(xml, "hit_hash: "));
@@ -131,7 +131,7 @@ TEST(Junit, a_flaw_of_a_method_on_a_bit_exact_device_passes_and_is_named)
     row.outcome = result;
     ASSERT_EQ(status_of(row), Status::flawed);
     EXPECT_FALSE(fails_check(row, false));
-    const std::string xml = junit_xml({row}, {fails_check(row, false)});
+    const std::string xml = junit_xml({row}, judge_rows({row}, nullptr, false));
     EXPECT_TRUE(contains(xml, "failures=\"0\" errors=\"0\""));
     EXPECT_TRUE(contains(xml, "conformity: bit-exact\nflawed: 3 wrong")) << xml;
 
@@ -154,7 +154,7 @@ TEST(Junit, a_flaw_of_a_method_on_a_bit_exact_device_passes_and_is_named)
 TEST(CheckVerdict, says_in_a_line_whether_the_devices_conform_and_which_do_not)
 {
     const auto text = [](const std::vector<RowRecord>& rows, const std::vector<std::string>& required = {}) {
-        const auto verdict = verdict_of(rows, false, required);
+        const auto verdict = verdict_of(rows, judge_rows(rows, nullptr, false), required);
         return verdict ? verdict->line().text() : "";
     };
     RowRecord good = skipped_row("");

@@ -304,8 +304,54 @@ TEST_F(Compare, refuses_files_that_it_cannot_compare)
         EXPECT_EQ(ended.out, "") << bad;
         EXPECT_TRUE(contains(ended.errors, bad));
     }
-    EXPECT_EQ(run("compare good.json check.json").code, 1) << "nothing is as fast as before";
+    const Ended mixed = run("compare good.json check.json");
+    EXPECT_EQ(mixed.code, 2);
+    EXPECT_TRUE(contains(mixed.errors, "'check.json' is of 'tetrace check', which has verdicts and no times"))
+        << mixed.errors;
+    EXPECT_EQ(run("compare check.json check.json check.json").code, 2);
+    EXPECT_EQ(run("compare check.json check.json --tolerance 5").code, 2);
     EXPECT_EQ(run("compare good.json none.json").code, 3);
+}
+
+TEST_F(Compare, of_two_checks_names_what_became_wrong_what_became_right_and_what_changed)
+{
+    const Ended checked =
+        run("check --backend openmp,cuda-host --layout tet80,half32 --scene cubes --resolution 3 --size "
+            "16 --views 0 --out a.json");
+    ASSERT_EQ(checked.code, 0) << checked.errors;
+    Json after = Json::parse(file("a.json"));
+    std::vector<std::size_t> others;
+    for (std::size_t i = 0; i < after["tetrace"]["rows"].size(); ++i)
+        if (after["tetrace"]["rows"][i]["backend"] == "cuda-host") others.push_back(i);
+    ASSERT_GE(others.size(), 2u);
+    Json& wrong = after["tetrace"]["rows"][others[0]];
+    wrong["status"] = "wrong";
+    wrong["verification"]["different_from_openmp"] = 12;
+    for (const std::size_t i : others)
+        after["tetrace"]["rows"][i]["self_test"]["denormals_kept"] = false;
+    write("b.json", after);
+    const std::string row = wrong["name"];
+
+    const Ended worse = run("compare a.json b.json --out c.json");
+    EXPECT_EQ(worse.code, 1) << worse.out << worse.errors;
+    EXPECT_TRUE(contains(unwrapped(worse), row + " bit-exact wrong: 12 rays BECAME WRONG")) << worse.out;
+    EXPECT_TRUE(contains(unwrapped(worse), "self_test/denormals_kept on cuda-host true false CHANGED")) << worse.out;
+    EXPECT_TRUE(contains(unwrapped(worse), "1 BECAME WRONG, 1 CHANGED, ")) << worse.out;
+    const Json comparison = Json::parse(file("c.json"))["tetrace"]["check_comparison"];
+    EXPECT_EQ(comparison["regressions"], Json({row}));
+    const Ended better = run("compare b.json a.json");
+    EXPECT_EQ(better.code, 0) << better.out;
+    EXPECT_TRUE(contains(unwrapped(better), row + " wrong: 12 rays bit-exact BECAME RIGHT")) << better.out;
+    EXPECT_EQ(run("compare b.json b.json").code, 0) << "what was wrong before is no regression";
+
+    after["tetrace"]["rows"].erase(others[0]);
+    write("b.json", after);
+    EXPECT_EQ(run("compare a.json b.json").code, 1) << "a row is missing";
+    const Ended allowed = run("compare a.json b.json --allow-missing");
+    EXPECT_EQ(allowed.code, 0) << allowed.out;
+    EXPECT_TRUE(contains(unwrapped(allowed), row + ": B: no such row")) << allowed.out;
+    EXPECT_EQ(run("compare b.json a.json").code, 0) << "a new row that is right";
+    EXPECT_EQ(run("compare a.json b.json --filter none").code, 2);
 }
 
 TEST_F(Compare, takes_two_files_and_more)

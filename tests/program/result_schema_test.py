@@ -66,6 +66,16 @@ def tiny(verb, *more):
     return fresh([verb, "--scene", "cubes", "--resolution", "3", "--size", "8", "--backend", "openmp,embree,cuda", *more])
 
 
+def judged(folder):
+    """A check of two repetitions with an unexpected pass, and a comparison of it with another."""
+    known, result = folder / "known.json", folder / "check.json"
+    known.write_text(json.dumps({"openmp": {"exceptions": {"cdt/maria/tet80": "wrong"}}}))
+    check = ["check", "--scene", "cubes", "--resolution", "3", "--size", "8", "--backend", "openmp,embree", "--repeat", "2"]
+    expected = fresh([*check, "--expect", str(known)], (1,))
+    result.write_text(json.dumps(expected))
+    return {"expected": expected, "checks": fresh(["compare", str(result), str(result)])}
+
+
 def reproduced(bench):
     """A result of `tetrace reproduce`, as results/README.md states it."""
     head = ("schema_version", "date", "version", "commit", "compiler", "flags", "host")
@@ -144,7 +154,9 @@ class ResultSchema(unittest.TestCase):
             file.flush()
             cls.compare = fresh(["compare", file.name, file.name])
             several = fresh(["compare", file.name, file.name, file.name])
-        cls.all = {"bench": cls.bench, "check": cls.check, "compare": cls.compare, "several": several, "reproduce": reproduced(cls.bench),
+        with tempfile.TemporaryDirectory() as folder:
+            checks = judged(pathlib.Path(folder))
+        cls.all = {**checks, "bench": cls.bench, "check": cls.check, "compare": cls.compare, "several": several, "reproduce": reproduced(cls.bench),
                    "table5": fresh(["reproduce", "table5", "--searches", "20x8", "--samples", "3", "--sample-time", "0", "--method", "maria",
                                     "--layout", "tet80", "--backend", "openmp", "--threads", "1"]),
                    "defects": fresh(["check", "--defects"], (0, 1)),

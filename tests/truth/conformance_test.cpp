@@ -1,7 +1,7 @@
 // Every usable device against what tests/expected/ says of its implementation: a change in either direction fails.
-#include "bench/measuring/conformity.h"
+#include "bench/expectations/expectation_files.h"
+#include "bench/expectations/judgement.h"
 #include "bench/measuring/view_recorder.h"
-#include "bench/output/device_json.h"
 #include "core/base/error.h"
 #include "scenes/procedural.h"
 #include "tests/support/damaged_scene.h"
@@ -18,8 +18,6 @@ using namespace tetrace;
 using namespace tetrace::test;
 
 namespace {
-
-using nlohmann::json;
 
 /// What is tested at once: a backend without its packets, or openmp's packets of one width.
 struct Part {
@@ -92,56 +90,6 @@ std::string names_of(const std::vector<RayKind>& kinds)
     return names;
 }
 
-/// "cdt/maria/tet80", followed by "/persistent", "/packets" or the kind of rays that it is given.
-std::string expected_name(const KernelId& kernel, RayKind kind)
-{
-    std::string name = name_of(kernel);
-    if (kernel.schedule != Schedule::tiles) name.append("/").append(name_of(kernel.schedule));
-    return kind == RayKind::primary ? name : name.append("/").append(name_of(kind));
-}
-
-/// What a file of tests/expected/ says of each row: every kernel of ours, of the schedules that the file names, has the
-/// status of its schedule, but for the exceptions.
-json expected_rows(const json& file)
-{
-    json rows = json::object();
-    for (const RayKind kind : traced_kinds)
-        for (const KernelId& kernel : kernels_of(kind == RayKind::primary ? Task::trace : Task::rays)) {
-            const auto status = file.at("rows").find(name_of(kernel.schedule));
-            if (is_portable(kernel) && kernel.math == MathMode::exact && status != file.at("rows").end())
-                rows[expected_name(kernel, kind)] = *status;
-        }
-    rows.update(file.at("exceptions"));
-    return rows;
-}
-
-json found_rows(const std::vector<RowRun>& rows)
-{
-    json statuses = json::object();
-    for (const RowRun& row : rows)
-        statuses[expected_name(row.key.kernel, row.key.rays)] = name_of(conformity_of(row));
-    return statuses;
-}
-
-json found_self_test(const std::vector<RowRun>& rows)
-{
-    for (const RowRun& row : rows)
-        if (row.self_test) return self_test_json(*row.self_test);
-    return nullptr;
-}
-
-/// The file of tests/expected/ for a device that shows this.
-json file_of(const std::vector<RowRun>& rows)
-{
-    json file = {{"self_test", found_self_test(rows)}, {"rows", json::object()}, {"exceptions", json::object()}};
-    for (const RowRun& row : rows)
-        file["rows"].emplace(name_of(row.key.kernel.schedule), name_of(conformity_of(row)));
-    const json found = found_rows(rows), expected = expected_rows(file);
-    for (const auto& [name, status] : found.items())
-        if (expected.at(name) != status) file["exceptions"][name] = status;
-    return file;
-}
-
 std::vector<RowKey> rows_on(Backend& backend, std::size_t device, const Options& options)
 {
     std::vector<RowKey> keys = select_rows(options, {"cubes"}, {&backend});
@@ -150,16 +98,20 @@ std::vector<RowKey> rows_on(Backend& backend, std::size_t device, const Options&
     return keys;
 }
 
-/// Compares key by key, so that the message names what changed.
-void compare(const std::string& file, const char* part, const json& expected, const json& found)
+/// A row of each kernel of ours whose schedule the file names.
+void expect_all(const Part& part, const Expectation& expectation, const std::vector<RowRecord>& rows)
 {
-    for (const auto& [key, value] : found.items())
-        EXPECT_EQ(expected.value(key, json("nothing")), value)
-            << file << ": " << part << ", " << key << ": expected on the left, found on the right. A device that got "
-            << "worse has a new defect, or its kernel has: find out which. One that got better deserves the new "
-               "status: write what is found into the file, as an exception where it is not that of its schedule.";
-    for (const auto& [key, value] : expected.items())
-        EXPECT_TRUE(found.contains(key)) << file << ": " << part << ", " << key << " is expected, and not there now";
+    for (const RayKind kind : traced_kinds)
+        for (const KernelId& kernel : kernels_of(kind == RayKind::primary ? Task::trace : Task::rays)) {
+            const bool is_of_part = (kernel.schedule == Schedule::packets) == (part.packet_lanes != 0);
+            const bool is_expected = is_portable(kernel) && kernel.math == MathMode::exact &&
+                                     expectation.rows.contains(std::string(name_of(kernel.schedule)));
+            if (!is_of_part || !is_expected) continue;
+            EXPECT_TRUE(std::ranges::any_of(
+                rows, [&](const RowRecord& row) { return row.key.kernel == kernel && row.key.rays == kind; }))
+                << name_of(kernel) << " of schedule " << name_of(kernel.schedule) << ", " << name_of(kind)
+                << ", is expected, and not there now";
+        }
 }
 
 Backend& backend_named(const std::string& name)
@@ -177,15 +129,6 @@ std::vector<Part> all_parts()
     for (const unsigned lanes : packet_widths)
         parts.push_back({"openmp", lanes});
     return parts;
-}
-
-/// The rows of tests/expected/ that a part has.
-json rows_of(const Part& part, const json& rows)
-{
-    json result = json::object();
-    for (const auto& [name, status] : rows.items())
-        if ((name.find("/packets") != std::string::npos) == (part.packet_lanes != 0)) result[name] = status;
-    return result;
 }
 
 bool may_find_no_exit(Method method)
@@ -206,13 +149,19 @@ protected:
     {
         const Options options = small_run(GetParam(), names_of(traced_kinds), "cdt,bvh");
         SceneWork scene(small_cubes(), options);
-        const auto rows = verified_rows(rows_on(backend, device, options), scene, options);
-        const std::string name = backend.devices()[device].implementation + ".json";
-        const std::filesystem::path path = std::filesystem::path(TETRACE_EXPECTED_FOLDER) / name;
-        if (!std::filesystem::exists(path)) return fmt::format("tests/expected/{}:\n{}\n", name, file_of(rows).dump(2));
-        const json file = json::parse(read_text(path));
-        compare(name, "self_test", file.at("self_test"), found_self_test(rows));
-        compare(name, "rows", rows_of(GetParam(), expected_rows(file)), found_rows(rows));
+        const auto rows = records_of(verified_rows(rows_on(backend, device, options), scene, options));
+        const std::string& name = backend.devices()[device].implementation;
+        const std::filesystem::path path = std::filesystem::path(TETRACE_EXPECTED_FOLDER) / (name + ".json");
+        if (!std::filesystem::exists(path))
+            return fmt::format("tests/expected/{}.json:\n{}\n", name,
+                               expectation_json(expectations_of(rows, true).at(name)).dump(2));
+        const Expectations expectations = read_expectations({path});
+        for (const Deviation& one : judge_rows(rows, &expectations, true).deviations)
+            EXPECT_FALSE(fails(one.judged.judgement))
+                << name << ".json: " << one.name << ": " << one.judged.text() << ". A device that got worse has a new "
+                << "defect, or its kernel has: find out which. One that got better deserves the new status: write what "
+                << "it shows into the file, as an exception where it is not that of its schedule.";
+        expect_all(GetParam(), expectations.at(name), rows);
         return {};
     }
 };

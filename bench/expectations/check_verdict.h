@@ -1,0 +1,54 @@
+#pragma once
+
+#include "bench/expectations/judgement.h"
+#include "bench/terminal/sheet.h"
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace tetrace {
+
+/// The verdict of a check, and the line that it ends with.
+struct CheckVerdict {
+    bool conforms = true;
+    std::string text; ///< "13 rows on 2 devices.", or "6 of 13 rows, all on opencl."
+
+    [[nodiscard]] Sheet line() const;
+};
+
+/// Empty if no row was judged. judgement: of these rows. required: backends of which each row must have an answer, or
+/// be without one as expected.
+[[nodiscard]] std::optional<CheckVerdict> verdict_of(const std::vector<RowRecord>& rows,
+                                                     const CheckJudgement& judgement,
+                                                     const std::vector<std::string>& required);
+
+/// The verdict on what was judged by expectations. judged: "13 rows on 2 devices". unanswered: how many of them were
+/// required to have a result and have none. end: of the sentence.
+[[nodiscard]] CheckVerdict verdict_by_expectations(const std::string& judged, const std::vector<Deviation>& deviations,
+                                                   std::size_t unanswered = 0, const std::string& end = ".");
+
+/// In a result, under "verdict".
+void set_verdict(nlohmann::json& section, const std::optional<CheckVerdict>& verdict);
+
+/// The line of a result's verdict; nothing for a result without.
+[[nodiscard]] Sheet verdict_line(const ResultValue& section);
+
+/// In a result, under "expectations": what is not simply as it should be, and the implementations that no file
+/// mentions.
+void set_expectations(nlohmann::json& section, const std::vector<Deviation>& deviations,
+                      const std::vector<std::string>& unmentioned);
+
+/// Of a judgement's devices, those that no file mentions, each implementation once.
+[[nodiscard]] std::vector<std::string> unmentioned_of(const CheckJudgement& judgement);
+
+/// The names of what failed as expected, by a result's "expectations".
+[[nodiscard]] std::set<std::string> known_failures(const ResultValue& section);
+
+/// What a result says under "expectations", line by line; nothing for a result without. Throws Error{invalid_input}
+/// naming the key that is missing or of another kind.
+[[nodiscard]] Sheet expectation_lines(const ResultValue& section);
+
+} // namespace tetrace
