@@ -13,11 +13,13 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <optional>
 #include <string_view>
+#include <thread>
 #include <utility>
 
 namespace tetrace {
@@ -72,6 +74,17 @@ std::optional<FileLock> FileLock::try_take(const std::filesystem::path& path)
         if (reason != EINTR)
             throw Error(ErrorKind::invalid_input, fmt::format("locking {}: {}; check that its folder may be written to",
                                                               path.string(), std::strerror(reason)));
+    }
+}
+
+FileLock FileLock::wait_for(const std::filesystem::path& scene_file, const std::function<void()>& tell)
+{
+    std::filesystem::path path = scene_file;
+    path += ".lock";
+    for (;;) {
+        if (auto lock = try_take(path)) return std::move(*lock);
+        tell();
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
     }
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,9 @@ public:
     /// Empty where another process or thread has it. Throws Error{invalid_input} naming the path and the system's
     /// reason.
     [[nodiscard]] static std::optional<FileLock> try_take(const std::filesystem::path& path);
+
+    /// Takes the lock of a scene's file, as soon as no other has it. tell: called while it waits.
+    [[nodiscard]] static FileLock wait_for(const std::filesystem::path& scene_file, const std::function<void()>& tell);
 
     /// Whether another process, or a FileLock of this one, has it now.
     [[nodiscard]] static bool is_held(const std::filesystem::path& path);

@@ -91,6 +91,7 @@ struct BuildOptions {
 struct SceneRequest {
     std::string name; ///< as given; rows show scene_label()
     BuildOptions build;
+    bool is_default = false; ///< nobody named it: of a pinned scene whose mesh is another one here, that mesh will do
 };
 
 /// The row of that name, or null.

@@ -16,14 +16,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <chrono>
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <functional>
 #include <optional>
 #include <span>
-#include <thread>
 #include <utility>
 
 namespace tetrace {
@@ -58,7 +56,6 @@ private:
     [[nodiscard]] std::uint64_t hash_mesh() const;
     [[nodiscard]] std::string mismatch(const Scene& scene) const;
     [[nodiscard]] bool read_cached();
-    [[nodiscard]] FileLock wait_for_lock() const;
     void build_alone();
     void build();
     void set_apart();
@@ -154,22 +151,12 @@ bool MeshSceneLoader::read_cached()
     return loaded_.from_cache;
 }
 
-FileLock MeshSceneLoader::wait_for_lock() const
-{
-    fs::path lock_path = file_;
-    lock_path += ".lock";
-    for (;;) {
-        if (auto lock = FileLock::try_take(lock_path)) return std::move(*lock);
-        tell(fmt::format("waiting for another process that builds {}", label_));
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    }
-}
-
 void MeshSceneLoader::build_alone()
 {
     file_ = cache_directory() / file_.filename(); // it was looked for in a cache that can only be read, too
     make_cache_folder(file_.parent_path());
-    const FileLock lock = wait_for_lock();
+    const FileLock lock =
+        FileLock::wait_for(file_, [&] { tell(fmt::format("waiting for another process that builds {}", label_)); });
     clear_leftovers(file_);
     loaded_.messages.clear();    // the second look says again what is still wrong
     if (!read_cached()) build(); // another process may have built it while we waited

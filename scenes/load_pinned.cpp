@@ -26,21 +26,21 @@ void require_usual_build(const PinnedScene& pinned, const BuildOptions& asked)
                                 pinned.name, pinned.of));
 }
 
-/// The mesh file of the catalogue's row, if it is the pinned one.
-fs::path pinned_mesh(const PinnedScene& pinned)
+fs::path mesh_of(const PinnedScene& pinned)
 {
     const std::string name(pinned.of);
     const auto procedural = find_procedural(name);
-    const fs::path mesh = procedural ? mesh_file(*procedural) : mesh_file(*find_in_catalogue(name));
+    return procedural ? mesh_file(*procedural) : mesh_file(*find_in_catalogue(name));
+}
+
+/// Empty if it is the pinned mesh.
+std::string other_mesh(const PinnedScene& pinned, const fs::path& mesh)
+{
     Hasher hasher;
     add_file(hasher, mesh);
-    if (hasher.hash() != pinned.source_hash)
-        throw Error(ErrorKind::invalid_input,
-                    fmt::format("scene {}: {} is another mesh: its bytes have the hash {}, and those of {} the hash "
-                                "{}; name the scene {} to use this mesh",
-                                pinned.name, mesh.string(), hash_text(hasher.hash()), pinned.name,
-                                hash_text(pinned.source_hash), pinned.of));
-    return mesh;
+    if (hasher.hash() == pinned.source_hash) return {};
+    return fmt::format("{} is another mesh: its bytes have the hash {}, and those of {} the hash {}", mesh.string(),
+                       hash_text(hasher.hash()), pinned.name, hash_text(pinned.source_hash));
 }
 
 /// Where the scene is cached if its stored tets are used.
@@ -89,8 +89,13 @@ LoadedScene from_stored_tets(const PinnedScene& pinned, const SceneRequest& requ
                              const Progress& progress)
 {
     const fs::path file = cached_file(pinned);
-    LoadedScene loaded;
     make_cache_folder(file.parent_path());
+    const FileLock lock = FileLock::wait_for(file, [&] {
+        if (progress) progress(fmt::format("waiting for another process that builds {}", pinned.name), -1, "");
+    });
+    clear_leftovers(file);
+    if (auto cached = read_cached(pinned, file)) return std::move(*cached); // by the process that had the lock
+    LoadedScene loaded;
     const BuildFolder work(file);
     const fs::path mesh_only = work.path() / "mesh.tet", joined = work.path() / "joined.tet";
     build_mesh_only(mesh, mesh_only, std::string(pinned.of), request.build, progress, loaded.messages);
@@ -106,28 +111,53 @@ LoadedScene from_stored_tets(const PinnedScene& pinned, const SceneRequest& requ
     return loaded;
 }
 
+/// Why a scene that was built here is not the pinned one.
+std::string why_other(const LoadedScene& built)
+{
+    if (built.no_tets) return fmt::format("making them here failed: {}", built.no_tets->what());
+    const OptimisedInfo& made = built.scene.build.optimised;
+    if (made.end != OptimiserEnd::finished)
+        return fmt::format("the optimiser was stopped early ({})", name_of(made.end));
+    return fmt::format("{} makes others here", built.scene.build.tool);
+}
+
 } // namespace
 
 LoadedScene load_pinned(const PinnedScene& pinned, const SceneRequest& request, const Progress& progress,
                         const std::function<LoadedScene(const fs::path& mesh)>& build)
 {
     require_usual_build(pinned, request.build);
-    const fs::path mesh = pinned_mesh(pinned);
-    if (auto cached = read_cached(pinned, cached_file(pinned))) return std::move(*cached);
-    std::string reason = "another optimiser made them";
-    if (pinned.optimiser == optimiser_version) {
-        try {
-            LoadedScene built = build(mesh);
-            if (built.hash == pinned.scene_hash) return built;
-            reason = fmt::format("{} makes others here", built.scene.build.tool);
-        } catch (const Error& error) {
-            if (error.kind() == ErrorKind::interrupted || error.kind() == ErrorKind::missing) throw;
-            reason = fmt::format("making them here failed: {}", error.what());
-        }
+    const fs::path mesh = mesh_of(pinned);
+    if (const std::string difference = other_mesh(pinned, mesh); !difference.empty()) {
+        if (!request.is_default)
+            throw Error(ErrorKind::invalid_input, fmt::format("scene {}: {}; name the scene {} to use this mesh",
+                                                              pinned.name, difference, pinned.of));
+        LoadedScene built = build(mesh);
+        built.messages.push_back(fmt::format("not {}: {}", pinned.name, difference));
+        return built;
     }
-    LoadedScene loaded = from_stored_tets(pinned, request, mesh, progress);
-    loaded.messages.push_back(
-        fmt::format("the tets are those of {} that this program stores: {}", pinned.name, reason));
+    LoadedScene loaded;
+    std::string reason = "another optimiser made them";
+    if (auto cached = read_cached(pinned, cached_file(pinned)))
+        loaded = std::move(*cached);
+    else {
+        std::vector<std::string> messages;
+        if (pinned.optimiser == optimiser_version) {
+            try {
+                LoadedScene built = build(mesh);
+                if (built.hash == pinned.scene_hash || built.interrupted) return built;
+                reason = why_other(built);
+                messages = std::move(built.messages);
+            } catch (const Error& error) {
+                if (error.kind() == ErrorKind::interrupted || error.kind() == ErrorKind::missing) throw;
+                reason = fmt::format("making them here failed: {}", error.what());
+            }
+        }
+        loaded = from_stored_tets(pinned, request, mesh, progress);
+        loaded.messages.insert(loaded.messages.begin(), messages.begin(), messages.end());
+        loaded.messages.push_back(fmt::format("{} is not made here: {}", pinned.name, reason));
+    }
+    loaded.messages.push_back(fmt::format("the tets are those of {} that tetrace stores", pinned.name));
     return loaded;
 }
 

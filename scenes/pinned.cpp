@@ -51,14 +51,6 @@ const PinnedScene* find_pinned(std::string_view name)
     return found != pinned_scenes().end() ? &*found : nullptr;
 }
 
-std::string newest_pinned(const std::string& of)
-{
-    std::string name = of;
-    for (const PinnedScene& pinned : pinned_scenes())
-        if (pinned.of == of) name = pinned.name;
-    return name;
-}
-
 const PinnedScene* pinned_with(std::uint64_t scene_hash)
 {
     const auto found = std::ranges::find(pinned_scenes(), scene_hash, &PinnedScene::scene_hash);

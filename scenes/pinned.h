@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <string_view>
 
 namespace tetrace {
@@ -27,8 +26,6 @@ struct PinnedScene {
 [[nodiscard]] std::span<const PinnedScene> pinned_scenes();
 /// The pinned scene of that name; null for another name.
 [[nodiscard]] const PinnedScene* find_pinned(std::string_view name);
-/// The name of the newest pinned scene of a row of the catalogue; the row's own name if it has none.
-[[nodiscard]] std::string newest_pinned(const std::string& of);
 /// The pinned scene that has this scene_hash(), however it was made; null if there is none.
 [[nodiscard]] const PinnedScene* pinned_with(std::uint64_t scene_hash);
 

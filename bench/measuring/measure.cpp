@@ -189,7 +189,15 @@ struct Sweep {
     SampleLog* log;
     unsigned samples; ///< per row and run
     double done = 0, all = 1;
-    std::exception_ptr failure = {}; ///< of the journal: Google Benchmark lets none through
+    std::map<const RowRun*, unsigned> targets = {}; ///< of rows that are sampled on
+    std::exception_ptr failure = {};                ///< of the journal: Google Benchmark lets none through
+
+    /// Samples of a row in the current run.
+    [[nodiscard]] unsigned target(const RowRun& row) const
+    {
+        const auto found = targets.find(&row);
+        return found == targets.end() ? samples : found->second;
+    }
 };
 
 /// Of the current run.
@@ -205,7 +213,7 @@ RowSamples take_sample(RowRun& row, const Sweep& sweep)
                              row.key.scene + ", " + row_label(row.key));
     };
     const std::size_t taken = samples_in_run(row);
-    Pass pass = taken + 1 < sweep.samples
+    Pass pass = taken + 1 < sweep.target(row)
                     ? pass_of(row, row.batches)
                     : pass_of(row, row.batches,
                               [&](const ViewBatch& views, std::span<const Hit> hits) { check_hits(row, views, hits); });
@@ -260,12 +268,13 @@ bool register_rows(const std::vector<RowRun*>& rows, Sweep& sweep)
     bool is_any = false;
     for (RowRun* const row : rows) {
         const std::size_t taken = samples_in_run(*row);
-        if (taken >= sweep.samples) continue;
+        const unsigned target = sweep.target(*row);
+        if (taken >= target) continue;
         is_any = true;
         benchmark::RegisterBenchmark(row_name(row->key).c_str(),
                                      [row, &sweep](benchmark::State& state) { run_row(state, *row, sweep); })
             ->Iterations(1)
-            ->Repetitions(static_cast<int>(sweep.samples - taken))
+            ->Repetitions(static_cast<int>(target - taken))
             ->UseManualTime()
             ->Unit(benchmark::kMillisecond);
     }
@@ -302,20 +311,24 @@ std::vector<RowRun*> noisy_rows(std::vector<RowRun>& rows)
 void sample_on(std::vector<RowRun>& rows, Sweep& sweep, MachineWatch& watch, const Budget& budget,
                GoogleReports& google)
 {
-    const unsigned asked = sweep.samples;
-    for (unsigned round = 1; round < max_rounds && !is_interrupted() && !sweep.failure; ++round) {
+    const unsigned most = max_rounds * sweep.samples;
+    while (!is_interrupted() && !sweep.failure) {
         watch.pulses().take();
         sweep.log->write(true);
         watch.pulses().judge_rows(rows, watch.load());
-        const auto noisy = noisy_rows(rows);
+        std::vector<RowRun*> noisy = noisy_rows(rows);
+        std::erase_if(noisy, [&](const RowRun* row) { return samples_in_run(*row) >= most; });
         double sample_s = 0;
         for (const RowRun* const row : noisy)
             sample_s += row->warm_s;
         if (noisy.empty() || budget.left_s() < sample_s) return;
-        const unsigned more =
-            sample_s > 0 ? static_cast<unsigned>(std::min<double>(asked, budget.left_s() / sample_s)) : asked;
-        sweep.samples += more;
-        sweep.all += static_cast<double>(noisy.size()) * more;
+        const double fitting = sample_s > 0 ? budget.left_s() / sample_s : sweep.samples;
+        for (const RowRun* const row : noisy) {
+            const auto taken = static_cast<unsigned>(samples_in_run(*row));
+            sweep.targets[row] =
+                std::min(most, taken + static_cast<unsigned>(std::min<double>(sweep.samples, fitting)));
+            sweep.all += sweep.targets[row] - taken;
+        }
         for (const auto& group : sample_groups(noisy))
             if (register_rows(group, sweep)) google.run();
     }
@@ -335,16 +348,17 @@ struct EarlierSamples {
     std::vector<std::pair<const RowRun*, std::pair<double, double>>> taken; ///< when each sample was, for the pulses
 };
 
+/// most: of a run.
 void restore_row(RowRun& row, const RowSamples& samples, unsigned most)
 {
     require_samples(samples, samples.samples_s.size(), true);
     add_samples(row, samples);
-    if (samples_in_run(row) > max_rounds * most)
-        throw std::domain_error(
-            fmt::format("{} has more than {} samples of a run", row_name(row.key), max_rounds * most));
+    if (samples_in_run(row) > most)
+        throw std::domain_error(fmt::format("{} has more than {} samples of a run", row_name(row.key), most));
 }
 
-EarlierSamples restore_samples(std::vector<RowRun>& rows, const Journal& journal)
+/// rounds: how many times the samples of a run a row may have.
+EarlierSamples restore_samples(std::vector<RowRun>& rows, const Journal& journal, unsigned rounds)
 {
     EarlierSamples earlier;
     try {
@@ -360,7 +374,7 @@ EarlierSamples restore_samples(std::vector<RowRun>& rows, const Journal& journal
                 const std::string name = row_name(row.key);
                 if (is_timed(row) && samples.contains(name)) {
                     const RowSamples more = samples_from(samples[name]);
-                    restore_row(row, more, earlier.samples);
+                    restore_row(row, more, rounds * earlier.samples);
                     for (const auto& interval : more.sampled_s)
                         earlier.taken.emplace_back(&row, interval);
                 }
@@ -429,7 +443,10 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
     join_views_of(rows);
     result.runs = options.runs;
     EarlierSamples earlier;
-    if (shared.journal != nullptr) earlier = restore_samples(rows, *shared.journal);
+    // Google's own reports are of as many samples for each row.
+    const bool exact =
+        options.exact_samples || options.runs > 1 || flags.repetitions || flags.format || !flags.out.empty();
+    if (shared.journal != nullptr) earlier = restore_samples(rows, *shared.journal, exact ? 1 : max_rounds);
     result.samples = earlier.samples;
     const TimedPart part = warm_up_rows(rows, options.samples, sampler, budget);
     if (is_interrupted()) {
@@ -466,9 +483,7 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
         log.begin_run(run);
         for (const auto& group : groups)
             if (register_rows(group, sweep)) google.run();
-        // Google's own reports are of as many samples for each row.
-        const bool exact = options.exact_samples || flags.repetitions || flags.format || !flags.out.empty();
-        if (!exact && result.runs == 1) sample_on(rows, sweep, watch, budget, google);
+        if (!exact) sample_on(rows, sweep, watch, budget, google);
         if (sweep.failure) std::rethrow_exception(sweep.failure);
         count_samples(rows);
     }

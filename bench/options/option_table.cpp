@@ -307,9 +307,9 @@ std::vector<OptionRow> judging_options()
         {"Measuring", "--samples", "N",
          "Samples, 3 to 10000. Of 'bench' and of rivals for each row: a sample traces all selected views together, "
          "repeatedly for --sample-time. Of 'reproduce' for each row and view, or batch of searches. Fewer than 5 give "
-         "no interval, here and in 'compare'. Default: 10, and up to 30 for rows that are noisy, while --budget lasts; "
-         "of "
-         "'reproduce' 5, except for rivals.",
+         "no interval, here and in 'compare'. Default: 10, and up to three times as many for rows that are noisy, "
+         "while --budget "
+         "lasts (not with --runs, nor with Google Benchmark's output); of 'reproduce' 5, except for rivals.",
          bit(Verb::bench) | bit(Verb::reproduce), false,
          [](Options& o, const std::string& v) {
              set_count("--samples", &Options::samples, 3, 10000)(o, v);
@@ -362,7 +362,8 @@ std::vector<OptionRow> judging_options()
          [](Options& o, const std::string& v) { o.tolerance = parse_percent("--tolerance", v) / 100; },
          usual_for(every_verb, "difference in time that does not matter")},
         {"Judging", "--allow-missing", "",
-         "Exit with 0 even if rows that A timed, or checked, are missing, skipped or unsupported in B. Failed rows still "
+         "Exit with 0 even if rows that A timed, or checked, are missing, skipped or unsupported in B. Failed rows "
+         "still "
          "count.",
          bit(Verb::compare), false, set(&Options::allow_missing),
          usual_for(every_verb, "rows that B lacks do not fail")},

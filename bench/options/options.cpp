@@ -4,9 +4,9 @@
 #include "bench/options/option_table.h"
 #include "bench/options/option_values.h"
 #include "bench/options/rejected_options.h"
+#include "bench/options/workload.h"
 
 #include "core/base/control_groups.h"
-#include "scenes/pinned.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <fmt/format.h>
@@ -186,7 +186,7 @@ Options defaults_of(Verb verb)
 /// A workload decides them.
 constexpr std::string_view decided_by_workload[] = {"--scene",  "--repair",    "--no-repair", "--domain",     "--tets",
                                                     "--effort", "--divisions", "--switches",  "--camera-set", "--views",
-                                                    "--size",   "--rays",      "--ray-order", "--shard"};
+                                                    "--size",   "--rays",      "--ray-order"};
 
 void check_workload(Verb verb, const CLI::App& app)
 {
@@ -221,7 +221,7 @@ void choose_default_views(Options& options)
 {
     const bool is_main_job = options.verb == Verb::bench && options.scenes.empty() && !options.own_cameras &&
                              options.camera_set == CameraSet::frame;
-    if (is_main_job && options.views.empty()) options.views = "0,1";
+    if (is_main_job && options.views.empty()) options.views = workloads().front().views;
 }
 
 /// What shards of one run may differ in, and what `merge` gives anew: where output goes, and on what they run.
@@ -373,7 +373,7 @@ std::vector<SceneRequest> scene_requests(const Options& options)
         requests.push_back({name, build});
     if (options.scenes.empty())
         for (const std::string& name : default_scenes())
-            requests.push_back({are_pinned ? newest_pinned(name) : name, build});
+            requests.push_back({are_pinned ? default_scene(name) : name, build, true});
     return requests;
 }
 

@@ -8,7 +8,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 
 namespace tetrace {
@@ -56,13 +58,14 @@ std::string score_sentence(const Workload* workload, const std::vector<Score>& s
                                   : fmt::format("none: {} (the usual reason).", usual->first);
 }
 
-/// "bunny 1.84 [1.80, 1.88]; atrium ...": the walk's rate over the BVH's in each contest.
-template <class W, class R>
-std::string ratios_text(const std::vector<Contest<RowRecord>>& contests, W walk_kind, R rival_kind)
+constexpr std::size_t max_ratios = 3; // more are means
+
+/// "bunny 1.84 [1.80, 1.88] of bvh stream; atrium ...": the fastest walk's rate over the fastest BVH's in each contest.
+std::string ratios_text(const std::vector<Contest<RowRecord>>& contests)
 {
     std::vector<std::string> parts;
     for (const auto& contest : contests) {
-        const RowRecord *const walk = contest.fastest(walk_kind), *const bvh = contest.fastest(rival_kind);
+        const RowRecord *const walk = contest.fastest(Walk::any), *const bvh = contest.fastest(Rival::any);
         if (walk == nullptr || bvh == nullptr) continue;
         const Comparison comparison = compare_rates(*bvh, *walk);
         const bool noisy = figures_of(*walk)->noisy || figures_of(*bvh)->noisy;
@@ -72,12 +75,30 @@ std::string ratios_text(const std::vector<Contest<RowRecord>>& contests, W walk_
     return fmt::format("{}", fmt::join(parts, "; "));
 }
 
+/// "primary rays 1.08, diffuse rays 0.71": geometric means over the contests of a kind of rays.
+std::string means_text(const std::vector<Contest<RowRecord>>& contests)
+{
+    std::map<RayKind, std::vector<double>> logarithms;
+    for (const auto& contest : contests) {
+        const RowRecord *const walk = contest.fastest(Walk::any), *const bvh = contest.fastest(Rival::any);
+        if (walk != nullptr && bvh != nullptr)
+            logarithms[walk->key.rays].push_back(std::log(compare_rates(*bvh, *walk).ratio));
+    }
+    std::vector<std::string> parts;
+    for (const auto& [kind, list] : logarithms)
+        parts.push_back(
+            fmt::format("{} rays {:.2f}", name_of(kind),
+                        std::exp(std::accumulate(list.begin(), list.end(), 0.0) / static_cast<double>(list.size()))));
+    return fmt::format("{}{}", fmt::join(parts, ", "), parts.empty() ? "" : " (geometric means)");
+}
+
 std::string compared_text(const BenchResult& result)
 {
     std::vector<const RowRecord*> ranked;
     for (const RowRecord& row : result.rows)
         if (figures_of(row) && row.device.kind != DeviceKind::emulated) ranked.push_back(&row);
-    const std::string all = ratios_text(contests_of(ranked), Walk::any, Rival::any);
+    const auto contests = contests_of(ranked);
+    const std::string all = contests.size() > max_ratios ? means_text(contests) : ratios_text(contests);
     return all.empty() ? std::string() : "rate of the fastest walk over that of the fastest BVH: " + all + ".";
 }
 
@@ -97,7 +118,12 @@ std::string without_rate(const std::vector<RowRecord>& rows)
         parts.push_back(fmt::format("{} {}", counted(count, "row", "rows"), name_of(status)));
     std::string reason = reason_of(*first);
     reason = reason.substr(0, reason.find('\n'));
-    if (reason.size() > 100) reason = reason.substr(0, 97) + "...";
+    if (reason.size() > 100) {
+        std::size_t end = 97;
+        while ((static_cast<unsigned char>(reason[end]) & 0xC0u) == 0x80u) // within a character of UTF-8
+            --end;
+        reason = reason.substr(0, end) + "...";
+    }
     return fmt::format("{}; for example {}: {}", fmt::join(parts, ", "), row_label(first->key), reason);
 }
 

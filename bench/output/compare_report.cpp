@@ -236,8 +236,6 @@ nlohmann::json source_json(const ResultFile& file)
             {"host", {{"cpu", file.head.cpu}, {"system", file.head.system}}}};
 }
 
-} // namespace
-
 std::string summary_text(const ResultComparison& comparison)
 {
     const std::size_t compared = comparison.count(RowOutcome::compared);

@@ -215,7 +215,8 @@ std::string junit_xml(const std::vector<RowRecord>& rows, const CheckJudgement& 
     std::vector<Suite> suites;
     if (!problem.empty()) suites.emplace_back(Suite{verb}).add_problem(problem);
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (suites.empty() || suites.back().scene != rows[i].key.scene) suites.push_back(Suite{verb, rows[i].key.scene});
+        if (suites.empty() || suites.back().scene != rows[i].key.scene)
+            suites.push_back(Suite{verb, rows[i].key.scene});
         suites.back().add(rows[i], judgement.rows[i], judgement.has_expectations);
     }
     bool is_first = true;

@@ -17,8 +17,6 @@ namespace tetrace {
 
 namespace {
 
-constexpr double score_error = 0.05; // of the interval: the chance that it misses
-
 bool is_pinned_work(const ResultValue& scene, const PinnedScene& pinned, const Workload& workload,
                     const std::vector<std::uint32_t>& views)
 {
@@ -27,6 +25,31 @@ bool is_pinned_work(const ResultValue& scene, const PinnedScene& pinned, const W
     if (!cameras || cameras->hash() != hash_text(pinned.cameras_hash)) return false;
     if (scene.at("width").count() != workload.size || scene.at("height").count() != workload.size) return false;
     return std::ranges::equal(scene.at("views").items(), views, {}, &ResultValue::count);
+}
+
+/// Whether the records are those of the workload's scenes, in any order.
+bool has_scenes_of(const Workload& workload, const std::vector<nlohmann::json>& scenes)
+{
+    Options options;
+    options.views = workload.views;
+    const std::vector<std::uint32_t> views = selected_views(options);
+    return scenes.size() == workload.scenes.size() && std::ranges::all_of(workload.scenes, [&](const auto& name) {
+               return std::ranges::any_of(scenes, [&](const nlohmann::json& scene) {
+                   return is_pinned_work(ResultValue(scene, "scene"), *find_pinned(name), workload, views);
+               });
+           });
+}
+
+/// Whether the row traced rays of the workload; rows that were not traced have none.
+bool has_rays_of(const Workload& workload, const RowRecord& row)
+{
+    for (const Workload::Rays& rays : workload.rays)
+        if (rays.kind == row.key.rays && row.key.ray_order == RayOrder::tiles) {
+            if (!row.ray_hash || rays.hashes.empty()) return true;
+            for (std::size_t i = 0; i < workload.scenes.size(); ++i)
+                if (find_pinned(workload.scenes[i])->of == row.key.scene) return rays.hashes[i] == *row.ray_hash;
+        }
+    return false;
 }
 
 /// What one score is of: a kernel in one place.
@@ -39,56 +62,66 @@ bool same_score(const RowRecord& a, const RowRecord& b)
     return a.key == key;
 }
 
-/// The geometric mean of the rates of timed rows, each row's device seconds by `seconds`; 0 if none is timed.
-template <class Seconds>
-double mean_rate(const Score& score, const Seconds& seconds)
+/// In units of the medians of the rows' seconds: their geometric mean is divided into it for a score.
+double mean_mrays(const std::vector<const RowRecord*>& rows)
 {
     double sum = 0;
-    int count = 0;
-    for (const RowRecord* row : score.rows) {
-        if (!figures_of(*row)) continue;
-        sum += std::log(1e-6 * static_cast<double>(traced(*row)->totals.rays) / seconds(*row));
-        ++count;
+    for (const RowRecord* row : rows)
+        sum += std::log(1e-6 * static_cast<double>(traced(*row)->totals.rays));
+    return std::exp(sum / static_cast<double>(rows.size()));
+}
+
+/// Of the rows' samples, or of those of one run.
+MedianRatio mean_seconds(const std::vector<const RowRecord*>& rows, std::optional<std::size_t> run = {})
+{
+    std::vector<std::vector<double>> lists;
+    for (const RowRecord* row : rows)
+        lists.push_back(run ? samples_of_runs(*row).at(*run) : row->samples_s);
+    return geometric_mean_of_medians(lists);
+}
+
+std::vector<const RowRecord*> timed_rows(const Score& score)
+{
+    std::vector<const RowRecord*> timed;
+    std::ranges::copy_if(score.rows, std::back_inserter(timed),
+                         [](const RowRecord* row) { return figures_of(*row).has_value(); });
+    return timed;
+}
+
+/// By the samples of one run; over several, the range of their own scores.
+FactorInterval interval_of(const Score& score)
+{
+    const double mrays = mean_mrays(score.rows);
+    const std::size_t runs = score.rows.front()->run_samples.size();
+    if (runs <= 1) {
+        const MedianRatio seconds = mean_seconds(score.rows);
+        return {mrays / seconds.high, mrays / seconds.low};
     }
-    return count > 0 ? std::exp(sum / count) : 0;
-}
-
-/// The range of the runs' own scores.
-FactorInterval range_over_runs(const Score& score)
-{
     std::vector<double> scores;
-    for (std::size_t run = 0; run < score.rows.front()->run_samples.size(); ++run)
-        scores.push_back(
-            mean_rate(score, [&](const RowRecord& row) { return statistics_of(samples_of_runs(row).at(run)).median; }));
+    for (std::size_t run = 0; run < runs; ++run)
+        scores.push_back(mrays / mean_seconds(score.rows, run).value);
     const auto [low, high] = std::ranges::minmax(scores);
-    return {low, high};
-}
-
-/// All medians are between their bounds at once, but in score_error of all cases, and so is their mean.
-std::optional<FactorInterval> interval_of(const Score& score)
-{
-    if (score.rows.front()->run_samples.size() > 1) return range_over_runs(score);
-    const double error = score_error / static_cast<double>(score.rows.size());
-    for (const RowRecord* row : score.rows)
-        if (!median_interval(row->samples_s, error)) return std::nullopt;
-    return FactorInterval{
-        mean_rate(score, [&](const RowRecord& row) { return median_interval(row.samples_s, error)->high; }),
-        mean_rate(score, [&](const RowRecord& row) { return median_interval(row.samples_s, error)->low; })};
+    return {std::min(low, score.mrays_per_s), std::max(high, score.mrays_per_s)};
 }
 
 std::string reason_against(const Score& score, const Workload* workload)
 {
     if (workload == nullptr) return "not a workload";
     const std::size_t all = workload->scenes.size() * workload->rays.size();
-    std::size_t noisy = 0;
+    std::size_t noisy = 0, fewest = min_samples;
+    bool same_runs = true;
     for (const RowRecord* row : score.rows) {
         const auto figures = figures_of(*row);
         if (status_of(*row) != Status::ok || !figures)
             return fmt::format("{} is {}", rays_title(row->key),
                                status_of(*row) == Status::ok ? "not timed" : name_of(status_of(*row)));
         noisy += figures->noisy ? 1 : 0;
+        fewest = std::min(fewest, row->samples_s.size());
+        same_runs = same_runs && row->run_samples.size() == score.rows.front()->run_samples.size();
     }
     if (score.rows.size() < all) return fmt::format("{} of {} rows are missing", all - score.rows.size(), all);
+    if (fewest < min_samples) return fmt::format("fewer than {} samples", min_samples);
+    if (!same_runs) return "a run was interrupted";
     return noisy > 0 ? fmt::format("{} of {} rows are noisy", noisy, all) : std::string();
 }
 
@@ -102,22 +135,13 @@ std::optional<double> rate_of(const RowRecord& row)
 
 const Workload* workload_of(const std::vector<nlohmann::json>& scenes, const std::vector<RowRecord>& rows)
 {
-    for (const Workload& workload : workloads()) {
-        if (scenes.size() != workload.scenes.size()) continue;
-        Options options;
-        options.views = workload.views;
-        const std::vector<std::uint32_t> views = selected_views(options);
-        std::size_t same = 0;
-        for (std::size_t i = 0; i < scenes.size(); ++i) {
-            const PinnedScene* const pinned = find_pinned(workload.scenes[i]);
-            same += is_pinned_work(ResultValue(scenes[i], "scene"), *pinned, workload, views) ? 1 : 0;
-        }
-        std::set<RayKind> kinds;
-        for (const RowRecord& row : rows)
-            kinds.insert(row.key.rays);
-        if (same == scenes.size() && kinds == std::set<RayKind>(workload.rays.begin(), workload.rays.end()))
+    std::set<RayKind> kinds;
+    for (const RowRecord& row : rows)
+        kinds.insert(row.key.rays);
+    for (const Workload& workload : workloads())
+        if (workload.rays.size() == kinds.size() && has_scenes_of(workload, scenes) &&
+            std::ranges::all_of(rows, [&](const RowRecord& row) { return has_rays_of(workload, row); }))
             return &workload;
-    }
     return nullptr;
 }
 
@@ -131,8 +155,7 @@ std::string Score::title() const
 std::string Score::text() const
 {
     if (!is_score()) return {};
-    if (!interval) return fmt::format("{:.2f}", mrays_per_s);
-    return fmt::format("{:.2f} [{:.2f}, {:.2f}]", mrays_per_s, interval->low, interval->high);
+    return fmt::format("{:.2f} [{:.2f}, {:.2f}]", mrays_per_s, interval.low, interval.high);
 }
 
 std::vector<Score> scores_of(const Workload* workload, const std::vector<RowRecord>& rows)
@@ -145,7 +168,8 @@ std::vector<Score> scores_of(const Workload* workload, const std::vector<RowReco
     }
     for (Score& score : scores) {
         score.reason = reason_against(score, workload);
-        score.mrays_per_s = mean_rate(score, [](const RowRecord& row) { return statistics_of(row.samples_s).median; });
+        const auto timed = timed_rows(score);
+        if (!timed.empty()) score.mrays_per_s = mean_mrays(timed) / mean_seconds(timed).value;
         if (score.is_score()) score.interval = interval_of(score);
     }
     std::ranges::stable_sort(scores, std::ranges::greater(), &Score::mrays_per_s);
@@ -185,13 +209,12 @@ nlohmann::json scores_json(const std::vector<Score>& scores)
         nlohmann::json object = {{"row", score.title()}, {"backend", key.backend}, {"device_index", key.device}};
         for (const RowRecord* row : score.rows)
             object["rows"].push_back(row_name(row->key));
-        if (score.is_score())
+        if (score.is_score()) {
             object["mrays_per_s"] = score.mrays_per_s;
-        else
+            object["low"] = score.interval.low;
+            object["high"] = score.interval.high;
+        } else {
             object["reason"] = score.reason;
-        if (score.interval) {
-            object["low"] = score.interval->low;
-            object["high"] = score.interval->high;
         }
         list.push_back(std::move(object));
     }

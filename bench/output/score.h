@@ -6,14 +6,14 @@
 #include "bench/terminal/table.h"
 
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace tetrace {
 
 /// The workload that a run did: all of its scenes, with its cameras, views, size and kinds of rays. Null if it did
-/// other work, or more. scenes: as results record them; throws Error{invalid_input} if one is not a scene.
+/// other work, or more. Hashes decide: of scenes, cameras and given rays. scenes: as results record them; throws
+/// Error{invalid_input} if one is not a scene.
 [[nodiscard]] const Workload* workload_of(const std::vector<nlohmann::json>& scenes,
                                           const std::vector<RowRecord>& rows);
 
@@ -21,9 +21,8 @@ namespace tetrace {
 struct Score {
     std::vector<const RowRecord*> rows; ///< of each scene and kind of rays
     double mrays_per_s = 0;             ///< geometric mean of the rows that have a rate; a score if there is no reason
-    /// Of a score, 95 %, of all rows together; over the runs if there are several. Empty for too few samples.
-    std::optional<FactorInterval> interval;
-    std::string reason; ///< why it is no score: the run is not of a workload, or a row is missing, not ok, or noisy
+    FactorInterval interval = {};       ///< of a score: 95 %, from the samples of one run; the range of several runs
+    std::string reason; ///< why it is no score: not a workload, a row missing, not ok or noisy, or too few samples
 
     /// "cdt project half32".
     [[nodiscard]] std::string title() const;

@@ -32,22 +32,23 @@ std::string geometry_hash(const ResultScene& scene, bool is_bvh, bool have_mesh_
     return scene.source_hash.empty() ? scene.hash : scene.source_hash;
 }
 
-std::string other_rays(const ResultScene& a, const ResultScene& b, bool is_bvh)
-{
-    const bool have_mesh_hash = !a.mesh_hash.empty() && !b.mesh_hash.empty();
-    const std::string in_a = geometry_hash(a, is_bvh, have_mesh_hash), in_b = geometry_hash(b, is_bvh, have_mesh_hash);
-    if (in_a != in_b)
-        return fmt::format("the {} {} has hash {} in A and {} in B", is_bvh ? "mesh of" : "scene", a.name, in_a, in_b);
-    if (rays_text(a) != rays_text(b)) return fmt::format("{} in A, {} in B", rays_text(a), rays_text(b));
-    if (a.views != b.views) return fmt::format("other views of {} in A than in B", a.camera_set);
-    return {};
-}
-
 /// What differs, and what would do A's work again.
 std::string other_work(const ResultScene& a, const ResultScene& b, bool is_bvh)
 {
-    const std::string difference = other_rays(a, b, is_bvh), recipe = work_recipe(a, b).text();
-    return difference + (difference.empty() || recipe.empty() ? "" : "; ") + (difference.empty() ? "" : recipe);
+    const bool have_mesh_hash = !a.mesh_hash.empty() && !b.mesh_hash.empty();
+    const std::string in_a = geometry_hash(a, is_bvh, have_mesh_hash), in_b = geometry_hash(b, is_bvh, have_mesh_hash);
+    std::string difference;
+    if (in_a != in_b)
+        difference =
+            fmt::format("the {} {} has hash {} in A and {} in B", is_bvh ? "mesh of" : "scene", a.name, in_a, in_b);
+    else if (rays_text(a) != rays_text(b))
+        difference = fmt::format("{} in A, {} in B", rays_text(a), rays_text(b));
+    else if (a.views != b.views)
+        difference = fmt::format("other views of {} in A than in B", a.camera_set);
+    else
+        return {};
+    const std::string recipe = work_recipe(a, b, in_a == in_b).text();
+    return difference + (recipe.empty() ? "" : "; ") + recipe;
 }
 
 std::string other_searches(const ResultFile& a, const ResultFile& b)

@@ -1,5 +1,7 @@
 #include "bench/results/work_recipe.h"
 
+#include "bench/terminal/text.h"
+#include "core/rays/camera_set.h"
 #include "scenes/pinned.h"
 
 #include <algorithm>
@@ -33,47 +35,59 @@ std::string views_text(const std::vector<std::uint64_t>& views)
     return text;
 }
 
+/// The texts are of a file, and become a part of a command line.
 void add(WorkRecipe& recipe, const std::string& option, const std::string& value)
 {
-    recipe.options += fmt::format("{}{} {}", recipe.options.empty() ? "" : " ", option, value);
+    if (value.empty()) return;
+    recipe.options += fmt::format("{}{} {}", recipe.options.empty() ? "" : " ", option, shell_word(value));
 }
 
-/// The options that decide tets, where they differ; false if none does.
-bool add_build(WorkRecipe& recipe, const ResultScene& a, const ResultScene& b)
+/// Results before the key have CDTs.
+std::string kind_of(const ResultScene& scene)
 {
-    const std::size_t before = recipe.options.size();
-    const auto kind_of = [](const ResultScene& scene) { return scene.tets_kind.empty() ? "cdt" : scene.tets_kind; };
+    return scene.tets_kind.empty() ? "cdt" : scene.tets_kind;
+}
+
+/// The options that decide tets, where they differ.
+void add_build(WorkRecipe& recipe, const ResultScene& a, const ResultScene& b)
+{
     if (kind_of(a) != kind_of(b)) add(recipe, "--tets", kind_of(a));
     if (a.domain != b.domain) add(recipe, "--domain", a.domain);
-    if (a.divisions != b.divisions) add(recipe, "--divisions", std::to_string(a.divisions));
+    if (a.divisions != b.divisions && a.divisions > 0) add(recipe, "--divisions", std::to_string(a.divisions));
     if (a.effort && b.effort && a.effort != b.effort) add(recipe, "--effort", std::to_string(*a.effort));
     if (kind_of(a) == kind_of(b) && a.switches != b.switches) add(recipe, "--switches", a.switches);
-    return recipe.options.size() > before;
 }
 
 void add_scene(WorkRecipe& recipe, const ResultScene& a, const ResultScene& b)
 {
-    if (a.hash == b.hash) return;
     if (const PinnedScene* const pinned = pinned_of(a)) {
         add(recipe, "--scene", std::string(pinned->name));
+        if (kind_of(b) != "rays" || a.effort != b.effort || a.domain != b.domain || a.divisions != b.divisions)
+            recipe.usual_tets = true;
         return;
     }
-    if (!a.source_hash.empty() && !b.source_hash.empty() && a.source_hash != b.source_hash)
+    if (!a.source_hash.empty() && !b.source_hash.empty() && a.source_hash != b.source_hash) {
         recipe.obstacle = fmt::format("A's {} was made from another mesh file, of hash {}", a.name, a.source_hash);
-    else if (!add_build(recipe, a, b))
-        recipe.obstacle = fmt::format("the same options made other tets of {} in A's version of tetrace, which are "
-                                      "not pinned; only its BVH rows compare",
-                                      a.name);
+        return;
+    }
+    add_build(recipe, a, b);
+    if (recipe.options.empty() || kind_of(a) == "rays")
+        recipe.obstacle =
+            fmt::format("A's version of tetrace may have made other tets of {} with the same options, and "
+                        "they are not pinned; its BVH rows compare in any case",
+                        a.name);
 }
 
 void add_rays(WorkRecipe& recipe, const ResultScene& a, const ResultScene& b)
 {
-    const bool other_set = a.camera_set != b.camera_set, other_numbers = a.camera_set_hash != b.camera_set_hash;
+    const bool is_known = value_named<CameraSet>(a.camera_set).has_value();
     const bool other_mesh = !a.source_hash.empty() && a.source_hash != b.source_hash; // frame depends on it
-    if (other_set)
+    const bool other_numbers = a.camera_set_hash != b.camera_set_hash && !other_mesh;
+    if (is_known && a.camera_set != b.camera_set)
         add(recipe, "--camera-set", a.camera_set);
-    else if (other_numbers && !other_mesh && recipe.obstacle.empty())
-        recipe.obstacle = fmt::format("the cameras of {} had other numbers in A", a.camera_set);
+    else if (a.camera_set != b.camera_set || other_numbers)
+        recipe.obstacle += fmt::format("{}A's cameras are those of {}, of hash {}", recipe.obstacle.empty() ? "" : "; ",
+                                       a.camera_set, a.camera_set_hash);
     if (a.views != b.views) add(recipe, "--views", views_text(a.views));
     if (a.width != b.width || a.height != b.height) add(recipe, "--size", fmt::format("{}x{}", a.width, a.height));
 }
@@ -82,14 +96,16 @@ void add_rays(WorkRecipe& recipe, const ResultScene& a, const ResultScene& b)
 
 std::string WorkRecipe::text() const
 {
-    const std::string measure = options.empty() ? "" : "measure B with " + options;
+    const std::string measure =
+        options.empty() ? ""
+                        : fmt::format("measure B with {}{}", options, usual_tets ? ", without options of tets" : "");
     return measure + (measure.empty() || obstacle.empty() ? "" : "; ") + obstacle;
 }
 
-WorkRecipe work_recipe(const ResultScene& a, const ResultScene& b)
+WorkRecipe work_recipe(const ResultScene& a, const ResultScene& b, bool same_geometry)
 {
     WorkRecipe recipe;
-    add_scene(recipe, a, b);
+    if (!same_geometry) add_scene(recipe, a, b);
     add_rays(recipe, a, b);
     return recipe;
 }

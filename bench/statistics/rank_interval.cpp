@@ -178,6 +178,23 @@ MedianRatio ratio_of_medians(const std::vector<double>& numerator, const std::ve
     return {value, quantile(ratios, outside_low), quantile(ratios, 1 - outside_low)};
 }
 
+MedianRatio geometric_mean_of_medians(const std::vector<std::vector<double>>& lists)
+{
+    if (lists.empty()) throw Error(ErrorKind::internal, "the mean of no medians");
+    const auto mean_of = [&](const auto& median) {
+        double sum = 0;
+        for (const std::vector<double>& samples : lists)
+            sum += std::log(median(samples));
+        return std::exp(sum / static_cast<double>(lists.size()));
+    };
+    const double value = mean_of([](const auto& samples) { return statistics_of(samples).median; });
+    std::mt19937_64 random(seed);
+    std::vector<double> means;
+    for (int i = 0; i < resamples; ++i)
+        means.push_back(mean_of([&](const auto& samples) { return resampled_median(samples, random); }));
+    return {value, quantile(means, outside_low), quantile(means, 1 - outside_low)};
+}
+
 MedianRatio ratio_over_runs(const Runs& numerator, const Runs& denominator)
 {
     if (numerator.empty() || numerator.size() != denominator.size())

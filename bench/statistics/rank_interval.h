@@ -53,6 +53,10 @@ struct MedianRatio {
 [[nodiscard]] MedianRatio ratio_of_medians(const std::vector<double>& numerator,
                                            const std::vector<double>& denominator);
 
+/// The geometric mean of the medians of several lists of samples, with a 95 % interval by the same bootstrap: each list
+/// is drawn again with replacement, independently. Throws Error{internal} for no lists, and as ratio_of_medians().
+[[nodiscard]] MedianRatio geometric_mean_of_medians(const std::vector<std::vector<double>>& lists);
+
 /// The least number of runs whose interval comes from resampling.
 inline constexpr std::size_t resampled_runs = 5;
 

@@ -40,8 +40,8 @@ bool bounds_anything(std::size_t views, Sampling sampling)
 }
 
 /// How many of n numbers are left out on each side of their median's interval: the most that a fair coin, thrown n
-/// times, gives heads at most in no more than that share of all cases. Empty if leaving out none is too many.
-std::optional<std::size_t> left_out_of_median(std::size_t n, double share)
+/// times, gives heads at most in no more than the tail of all cases.
+std::size_t left_out_of_median(std::size_t n)
 {
     const auto count = static_cast<double>(n);
     double probability = 0;
@@ -49,9 +49,9 @@ std::optional<std::size_t> left_out_of_median(std::size_t n, double share)
         const auto k = static_cast<double>(heads);
         probability +=
             std::exp(std::lgamma(count + 1) - std::lgamma(k + 1) - std::lgamma(count - k + 1) - count * std::log(2.0));
-        if (probability > share) return heads > 0 ? std::optional(heads - 1) : std::nullopt;
+        if (probability > tail) return std::max<std::size_t>(heads, 1) - 1;
     }
-    return std::nullopt;
+    return 0;
 }
 
 /// statistic: of the views with these indices.
@@ -141,18 +141,10 @@ Estimate median_of_views(const std::vector<double>& values, Sampling sampling)
     if (!bounds_anything(values.size(), sampling)) return estimate;
     std::vector<double> sorted = values;
     std::ranges::sort(sorted);
-    const std::size_t outside = left_out_of_median(sorted.size(), tail).value_or(0);
+    const std::size_t outside = left_out_of_median(sorted.size());
     estimate.low = sorted[outside];
     estimate.high = sorted[sorted.size() - 1 - outside];
     return estimate;
-}
-
-std::optional<FactorInterval> median_interval(std::vector<double> samples, double error)
-{
-    const auto outside = left_out_of_median(samples.size(), error / 2);
-    if (!outside) return std::nullopt;
-    std::ranges::sort(samples);
-    return FactorInterval{samples[*outside], samples[samples.size() - 1 - *outside]};
 }
 
 Estimate ratio_of_sums(const std::vector<double>& numerator, const std::vector<double>& denominator, Sampling sampling)

@@ -1,7 +1,5 @@
 #pragma once
 
-#include "bench/statistics/rank_interval.h"
-
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -84,10 +82,6 @@ inline constexpr std::size_t min_views = 10;
 /// Throws Error{internal} for no numbers.
 /// Source: Conover, "Practical Nonparametric Statistics" (1971), confidence intervals for a quantile.
 [[nodiscard]] Estimate median_of_views(const std::vector<double>& values, Sampling sampling = Sampling::even);
-
-/// The order statistics between which the median of the samples' distribution lies, whatever it is, but in at most
-/// `error` of all cases: the interval of the sign test. Empty for too few samples. Source: as of median_of_views().
-[[nodiscard]] std::optional<FactorInterval> median_interval(std::vector<double> samples, double error);
 
 /// The sum of one list over that of another, pairs belonging to one view each: percentile bootstrap over the views.
 /// Throws Error{internal} for no pairs, lists of different lengths, or a denominator that is not positive.

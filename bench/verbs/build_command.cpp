@@ -127,7 +127,7 @@ std::vector<Cell> table_row(const Built& built)
             count(built.counts.free_faces),
             good ? Cell(1e-6 * static_cast<double>(built.bytes)) : Cell(),
             good ? Cell(1e-6 * reached_bytes(built)) : Cell(),
-            good ? Cell(built.build_s) : Cell(),
+            good && built.build_s > 0 ? Cell(built.build_s) : Cell(), // else the tets were stored
             cost(optimised.seconds),
             cost(optimised.cost_before),
             cost(optimised.cost_after),

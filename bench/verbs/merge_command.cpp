@@ -91,8 +91,9 @@ Merged merged_bench(const Shards& shards, const Options& options)
     for (const RowRecord& row : result.rows) {
         const auto runs = static_cast<unsigned>(std::max<std::size_t>(row.run_samples.size(), 1));
         result.measurement.runs = std::max(result.measurement.runs, runs);
-        result.measurement.samples =
-            std::max(result.measurement.samples, static_cast<unsigned>(row.samples_s.size() / runs));
+        const auto samples = static_cast<unsigned>(row.samples_s.size() / runs); // rows that were noisy have more
+        unsigned& fewest = result.measurement.samples;
+        if (samples > 0) fewest = fewest == 0 ? samples : std::min(fewest, samples);
     }
     const CheckJudgement judgement = judge_answers(result.rows);
     write_junit(result.rows, judgement, options);

@@ -6,6 +6,7 @@
 #include "bench/results/result_file.h"
 #include "bench/show/show_report.h"
 #include "bench/verbs/commands.h"
+#include "core/base/error.h"
 
 #include <fmt/format.h>
 
@@ -28,6 +29,9 @@ std::string trust_of(const ResultFile& file)
 
 Report shown(const ResultFile& file, const Options& options)
 {
+    if (options.brief && file.head.verb != "bench")
+        throw Error(ErrorKind::usage,
+                    fmt::format("--brief is for results of bench; '{}' is of {}", file.path.string(), file.head.verb));
     Report report{{}, Table({}), file.json};
     report.sheet.line(made_by(file));
     report.sheet.gap();

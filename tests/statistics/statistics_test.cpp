@@ -57,19 +57,3 @@ TEST(AffordableSamples, keeps_what_fits_and_never_goes_below_five)
     EXPECT_EQ(affordable_samples(3, 100.0, 25), 3u) << "asked for";
     EXPECT_EQ(affordable_samples(10, 0.0, 25), 10u);
 }
-
-// P(no head in n throws) = 2^-n, and both ends of the interval may err.
-TEST(Statistics, the_interval_of_a_median_is_between_order_statistics)
-{
-    std::vector<double> samples;
-    for (int i = 10; i >= 1; --i)
-        samples.push_back(i);
-    const auto wide = median_interval(samples, 2.0 / 1024), narrow = median_interval(samples, 0.05);
-    ASSERT_TRUE(wide && narrow);
-    EXPECT_EQ(wide->low, 1);
-    EXPECT_EQ(wide->high, 10);
-    EXPECT_EQ(narrow->low, 2);
-    EXPECT_EQ(narrow->high, 9);
-    EXPECT_FALSE(median_interval(samples, 1.9 / 1024));
-    EXPECT_FALSE(median_interval({}, 0.05));
-}
