@@ -116,23 +116,33 @@ void require_selected(const std::vector<RowKey>& keys, const std::vector<std::st
                                     name));
 }
 
+/// The rows of one repetition.
+std::vector<RowRecord> verify_once(const std::vector<RowKey>& keys, const Options& options, Journal* journal,
+                                   Checked& checked)
+{
+    Budget budget(options.budget_s / options.repeat);
+    SceneRows run = open_and_verify(keys, options,
+                                    [&](const SeenImage& image) {
+                                        if (checked.pictures != nullptr) checked.pictures->see(image);
+                                    },
+                                    {journal, nullptr, nullptr, &budget});
+    for (RowRun& row : run.rows)
+        note_walks(row);
+    checked.scenes = scene_records(run, options);
+    return records_of(run.rows);
+}
+
 /// Does the check as often as --repeat says. An interrupted repetition counts only if it is the first.
 void verify_all(const std::vector<RowKey>& keys, const Options& options, Journal* journal, Checked& checked)
 {
-    std::vector<std::vector<RowRecord>> repetitions;
-    while (repetitions.size() < options.repeat) {
-        Budget budget(options.budget_s / options.repeat);
-        SceneRows run = open_and_verify(keys, options,
-                                        [&](const SeenImage& image) {
-                                            if (checked.pictures != nullptr) checked.pictures->see(image);
-                                        },
-                                        {journal, nullptr, nullptr, &budget});
-        if (is_interrupted() && !repetitions.empty()) break;
-        for (RowRun& row : run.rows)
-            note_walks(row);
-        repetitions.push_back(records_of(run.rows));
-        checked.scenes = scene_records(run, options);
-        if (is_interrupted()) break;
+    std::vector<std::vector<RowRecord>> repetitions = {verify_once(keys, options, journal, checked)};
+    while (repetitions.size() < options.repeat && !is_interrupted()) {
+        try {
+            auto rows = verify_once(keys, options, journal, checked);
+            if (!is_interrupted()) repetitions.push_back(std::move(rows));
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::interrupted) throw; // else it had no answer yet
+        }
     }
     checked.rows = combined_rows(repetitions, options.allow_flawed);
     checked.judgement =
