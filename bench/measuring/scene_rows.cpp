@@ -162,10 +162,14 @@ namespace {
 
 nlohmann::json optimised_json(const OptimisedInfo& made)
 {
-    nlohmann::json object = {{"effort", made.effort},         {"seconds", made.seconds},
-                             {"rounds", made.rounds},         {"cost_before", made.cost_before},
-                             {"cost_after", made.cost_after}, {"reason", made.reason},
-                             {"end", name_of(made.end)},      {"operations", nlohmann::json::array()}};
+    nlohmann::json object = {{"effort", static_cast<unsigned>(made.effort)},
+                             {"seconds", made.seconds},
+                             {"rounds", made.rounds},
+                             {"cost_before", made.cost_before},
+                             {"cost_after", made.cost_after},
+                             {"reason", made.reason},
+                             {"end", name_of(made.end)},
+                             {"operations", nlohmann::json::array()}};
     for (const OptimiserOperation& operation : made.operations)
         object["operations"].push_back({{"name", operation.name},
                                         {"done", operation.done},

@@ -102,23 +102,47 @@ Options with_default_layouts(Options options)
     return options;
 }
 
+<<<<<<< HEAD
+=======
+/// Without this, a required backend without a selected row would pass unnoticed.
+void require_selected(const std::vector<RowKey>& keys, const std::vector<std::string>& backends)
+{
+    for (const std::string& name : backends)
+        if (std::ranges::none_of(keys, [&](const RowKey& key) { return key.backend == name; }))
+            throw Error(ErrorKind::missing,
+                        fmt::format("--require {0}: no row of {0} is selected, so none would be judged; 'tetrace check "
+                                    "--list' with the same options prints those that are",
+                                    name));
+}
+
+/// The rows of one repetition.
+std::vector<RowRecord> verify_once(const std::vector<RowKey>& keys, const Options& options, Journal* journal,
+                                   Checked& checked)
+{
+    Budget budget(options.budget_s / options.repeat);
+    SceneRows run = open_and_verify(keys, options,
+                                    [&](const SeenImage& image) {
+                                        if (checked.pictures != nullptr) checked.pictures->see(image);
+                                    },
+                                    {journal, nullptr, nullptr, &budget});
+    for (RowRun& row : run.rows)
+        note_walks(row);
+    checked.scenes = scene_records(run, options);
+    return records_of(run.rows);
+}
+
+>>>>>>> 57c7762befa9f9b894632ee0e6a2473c083eaec8
 /// Does the check as often as --repeat says. An interrupted repetition counts only if it is the first.
 void verify_all(const std::vector<RowKey>& keys, const Options& options, Journal* journal, Checked& checked)
 {
-    std::vector<std::vector<RowRecord>> repetitions;
-    while (repetitions.size() < options.repeat) {
-        Budget budget(options.budget_s / options.repeat);
-        SceneRows run = open_and_verify(keys, options,
-                                        [&](const SeenImage& image) {
-                                            if (checked.pictures != nullptr) checked.pictures->see(image);
-                                        },
-                                        {journal, nullptr, nullptr, &budget});
-        if (is_interrupted() && !repetitions.empty()) break;
-        for (RowRun& row : run.rows)
-            note_walks(row);
-        repetitions.push_back(records_of(run.rows));
-        checked.scenes = scene_records(run, options);
-        if (is_interrupted()) break;
+    std::vector<std::vector<RowRecord>> repetitions = {verify_once(keys, options, journal, checked)};
+    while (repetitions.size() < options.repeat && !is_interrupted()) {
+        try {
+            auto rows = verify_once(keys, options, journal, checked);
+            if (!is_interrupted()) repetitions.push_back(std::move(rows));
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::interrupted) throw; // else it had no answer yet
+        }
     }
     checked.rows = combined_rows(repetitions, options.allow_flawed);
     checked.judgement =
