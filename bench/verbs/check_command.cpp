@@ -102,19 +102,6 @@ Options with_default_layouts(Options options)
     return options;
 }
 
-<<<<<<< HEAD
-=======
-/// Without this, a required backend without a selected row would pass unnoticed.
-void require_selected(const std::vector<RowKey>& keys, const std::vector<std::string>& backends)
-{
-    for (const std::string& name : backends)
-        if (std::ranges::none_of(keys, [&](const RowKey& key) { return key.backend == name; }))
-            throw Error(ErrorKind::missing,
-                        fmt::format("--require {0}: no row of {0} is selected, so none would be judged; 'tetrace check "
-                                    "--list' with the same options prints those that are",
-                                    name));
-}
-
 /// The rows of one repetition.
 std::vector<RowRecord> verify_once(const std::vector<RowKey>& keys, const Options& options, Journal* journal,
                                    Checked& checked)
@@ -131,7 +118,6 @@ std::vector<RowRecord> verify_once(const std::vector<RowKey>& keys, const Option
     return records_of(run.rows);
 }
 
->>>>>>> 57c7762befa9f9b894632ee0e6a2473c083eaec8
 /// Does the check as often as --repeat says. An interrupted repetition counts only if it is the first.
 void verify_all(const std::vector<RowKey>& keys, const Options& options, Journal* journal, Checked& checked)
 {
