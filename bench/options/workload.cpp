@@ -18,8 +18,8 @@ const std::vector<Workload>& workloads()
          "0,1",
          512,
          {{RayKind::primary},
-          {RayKind::diffuse, {0x5dd41d1c38a58059, 0xd0238565bb3f7a01, 0}},
-          {RayKind::random, {0x99f83c2fbe2126bc, 0xb2e7e7dee01bba60, 0}}}}};
+          {RayKind::diffuse, {0x5dd41d1c38a58059, 0xd0238565bb3f7a01, 0xf000e3a506b00b7e}},
+          {RayKind::random, {0x99f83c2fbe2126bc, 0xb2e7e7dee01bba60, 0x09afe474ad85d394}}}}};
     return all;
 }
 
