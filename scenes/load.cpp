@@ -304,6 +304,8 @@ LoadedScene load_mesh_scene(const SceneRequest& request, const fs::path& mesh, c
     std::vector<std::string> names;
     for (const CatalogueEntry& entry : catalogue())
         names.push_back(entry.name);
+    for (const PinnedScene& pinned : pinned_scenes())
+        names.emplace_back(pinned.name);
     const bool is_path = name.find('/') != std::string::npos || fs::path(name).has_extension();
     throw Error(
         is_path ? ErrorKind::missing : ErrorKind::usage,

@@ -6,6 +6,7 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,7 @@ struct Expectation {
     std::map<std::string, Finding> exceptions;           ///< by expected_name(), or "scene/" and that
     std::map<std::string, DefectFinding> defects;        ///< by name
     std::vector<Flakes> flakes;
+    std::set<std::string> judged = {}; ///< names of exceptions that a run would have made; not in files
 
     /// Null if the file does not mention the row, which is then expected to conform.
     [[nodiscard]] const Finding* status_of(const RowKey& key) const;

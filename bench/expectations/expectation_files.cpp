@@ -68,8 +68,11 @@ void update(Expectation& kept, const Expectation& shown)
         kept.defects[name] = status;
     if (!shown.defects.empty()) return;
     if (!shown.self_test.empty()) kept.self_test = shown.self_test;
-    kept.rows = shown.rows;
-    kept.exceptions = shown.exceptions;
+    for (const auto& [schedule, status] : shown.rows)
+        kept.rows[schedule] = status;
+    std::erase_if(kept.exceptions, [&](const auto& exception) { return shown.judged.contains(exception.first); });
+    for (const auto& [name, status] : shown.exceptions)
+        kept.exceptions[name] = status;
     for (const Expectation::Flakes& some : shown.flakes)
         if (std::ranges::find(kept.flakes, some.expression, &Expectation::Flakes::expression) == kept.flakes.end())
             kept.flakes.push_back(some);

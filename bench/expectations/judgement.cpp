@@ -198,6 +198,7 @@ Expectation expectation_of(const std::vector<const RowRecord*>& rows, bool flawe
         const Finding shown = finding_of(*row, flawed_passes);
         if (is_portable(key.kernel) && key.kernel.math == MathMode::exact) ++counts[key.kernel.schedule][shown];
         auto& found = names.try_emplace(expected_name(key), key, ByScene()).first->second;
+        expectation.judged.insert({expected_name(key), key.scene + "/" + expected_name(key)});
         Finding& worst = found.second.emplace(key.scene, shown).first->second;
         worst = std::max(worst, shown);
     }

@@ -45,6 +45,7 @@ json run_head(const Options& options, const std::vector<RowKey>& keys)
                  {"buffer_limit", options.buffer_limit},
                  {"budget_s", std::isinf(options.budget_s) ? json() : json(options.budget_s)},
                  {"samples", options.samples},
+                 {"exact_samples", options.exact_samples},
                  {"sample_s", options.sample_s},
                  {"runs", options.runs},
                  {"shard", text_of(shard_of(options))},

@@ -168,6 +168,7 @@ void set_origin(nlohmann::json& section, const std::vector<ShardResult>& shards)
         section.erase(key);
         if (first.contains(key)) section[key] = first[key];
     }
+    section.erase("command"); // each shard had one of its own
     section["merged"] = {{"shards", shards.size()}, {"machines", machines_json(shards)}};
 }
 

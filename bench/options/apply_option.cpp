@@ -2,6 +2,7 @@
 
 #include "core/device/backend.h"
 #include "scenes/catalogue.h"
+#include "scenes/pinned.h"
 
 namespace tetrace {
 
@@ -88,6 +89,8 @@ ApplyOption append_scenes()
     std::vector<std::string> names = {"all"};
     for (const CatalogueEntry& scene : catalogue())
         names.push_back(scene.name);
+    for (const PinnedScene& scene : pinned_scenes())
+        names.emplace_back(scene.name);
     return {[](Options& options, const std::string& text) {
                 const std::vector<std::string> named = text == "all" ? all_scenes() : std::vector{text};
                 options.scenes.insert(options.scenes.end(), named.begin(), named.end());

@@ -160,7 +160,9 @@ std::vector<std::filesystem::path> named_paths(const Options& options)
 {
     std::vector<std::filesystem::path> paths(options.scenes.begin(), options.scenes.end());
     paths.insert(paths.end(), options.files.begin(), options.files.end());
-    for (const auto* path : {&options.out, &options.junit, &options.picture_folder, &options.code_folder})
+    paths.insert(paths.end(), options.expected.begin(), options.expected.end());
+    for (const auto* path : {&options.out, &options.junit, &options.picture_folder, &options.code_folder,
+                             &options.write_expected, &options.chart_folder, &options.portability_csv})
         if (*path) paths.push_back(**path);
     if (options.own_cameras) paths.emplace_back(options.own_cameras->file);
     constexpr std::string_view out = "--benchmark_out=";
@@ -182,8 +184,10 @@ void make_anonymous(nlohmann::json& value, const Options& options)
 std::string anonymous_text(const std::string& text, const Options& options)
 {
     std::string result = text;
-    for (const std::filesystem::path& path : named_paths(options))
+    for (std::filesystem::path path : named_paths(options)) {
+        if (!path.has_filename()) path = path.parent_path(); // it ends in a slash
         if (path.has_parent_path() && path.has_filename()) replace_all(result, path.string(), path.filename().string());
+    }
     if (const char* home = std::getenv("HOME"); home != nullptr && std::string_view(home).size() > 1)
         shorten_home(result, home);
     return without_folders(result);

@@ -83,7 +83,8 @@ std::vector<OptionRow> scene_options()
          "Trace this named set of scenes, cameras and rays, whose results stay comparable across versions of "
          "tetrace: " +
              workload_texts() + ". Takes the place of the options of scenes and rays (docs/workloads.md).",
-         bit(Verb::bench) | bit(Verb::check), false, ApplyOption(apply_workload, workload_names())},
+         bit(Verb::bench) | bit(Verb::check), false, ApplyOption(apply_workload, workload_names()),
+         usual_for(bit(Verb::bench), "a named set of scenes, cameras and rays")},
         {"Scenes", "--scene", "SCENE",
          "A name from the catalogue ('tetrace scenes' lists it), a mesh file (PLY, OBJ, OFF, STL, glTF), a pipe of "
          "one, or a .tet file. May be repeated, or a list with commas. 'all' is every available scene of the catalogue "
@@ -204,7 +205,7 @@ std::vector<OptionRow> row_options()
          "normal (for both, any hit will do); 'diffuse', one bounce; 'random', lines through the domain. Default: "
          "primary.",
          measuring | bit(Verb::trace), true, append("--rays", &Options::rays),
-         usual_for(~bit(Verb::check), "kind of rays: {}")},
+         usual_for(~measuring, "kind of rays: {}")},
         {"Rows", "--ray-order", "ORDER",
          "Order of the rays of all kinds except primary: 'tiles', in the order of their pixels; 'morton', sorted by "
          "origin and direction; 'shuffled'. Each is a separate row. Default: tiles.",
@@ -249,8 +250,7 @@ std::vector<OptionRow> ray_options()
              "image; 'orbit', 1,282 views on a sphere of 2 radii; 'flight', 1,282 views from 1.2 to 2.9 radii; or a "
              ".json file with your own cameras (docs/cameras.md). Default: frame; for 'reproduce', except for rivals, "
              "flight.",
-         with_rays, false, set_cameras(),
-         usual_for(~(bit(Verb::check) | bit(Verb::reproduce)), "views: {}, or a .json file")},
+         with_rays, false, set_cameras(), usual_for(~sharing, "views: {}, or a .json file")},
         {"Rays", "--views", "LIST",
          "Views of the camera set, numbered from 0: numbers, ranges and strides, for example 0,3,10-20 or "
          "0-1281:64. Default: all; for 'bench' without --scene and with frame, 0 and 1.",
@@ -334,7 +334,8 @@ std::vector<OptionRow> judging_options()
          "devices and exit searches do not count. If not all samples fit, 'bench' takes fewer, but at least 5 (or "
          "--samples, if less), since fewer give no interval. The slowest rows are skipped until the others fit, or "
          "whole scenes, the last one first; 'reproduce' shares the time evenly by the scenes that are left. The "
-         "result states the budget that the skipped rows need. One row is always measured, however small TIME is; "
+         "result states the budget that the skipped rows need. With --repeat, each repetition has it. One row is "
+         "always measured, however small TIME is; "
          "otherwise a run exceeds the budget by at most a quarter. --benchmark_repetitions lifts the limit. "
          "Default: 4m; of 'check' and 'reproduce' no limit, but of rivals 10m.",
          sharing, false, set_seconds("--budget", &Options::budget_s),
@@ -374,8 +375,7 @@ std::vector<OptionRow> judging_options()
         {"Pictures", "--differences", "FOLDER",
          "Write a picture of each view in which a row differs from openmp, with the differing pixels marked: PNG, or "
          "PPM if OpenImageIO is missing. Default: none.",
-         bit(Verb::check), false, set_path("--differences", &Options::picture_folder),
-         usual_for(every_verb, "pictures of views in which a row differs")},
+         bit(Verb::check), false, set_path("--differences", &Options::picture_folder), usual_for(0, "")},
     };
 }
 
@@ -390,11 +390,13 @@ std::vector<OptionRow> report_options()
         {"Output", "--charts", "FOLDER",
          "Also write each chart of the page into this folder, as an SVG file that needs nothing else, for papers and "
          "slides; its name says what it shows. Default: none.",
-         bit(Verb::report), false, set_path("--charts", &Options::chart_folder)},
+         bit(Verb::report), false, set_path("--charts", &Options::chart_folder),
+         usual_for(every_verb, "each chart as an SVG file, too")},
         {"Output", "--portability", "FILE.csv",
          "Also write the application efficiency of each API and layout on each device, for tools of performance "
          "portability: problem, platform, application, efficiency (docs/report.md). Default: none.",
-         bit(Verb::report), false, set_path("--portability", &Options::portability_csv)},
+         bit(Verb::report), false, set_path("--portability", &Options::portability_csv),
+         usual_for(every_verb, "efficiencies, for performance portability")},
     };
 }
 

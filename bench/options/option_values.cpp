@@ -274,4 +274,20 @@ std::vector<std::uint32_t> parse_views(const std::string& text, std::size_t view
     return {numbers.begin(), numbers.end()};
 }
 
+std::string views_text(const std::vector<std::uint64_t>& views)
+{
+    std::string text;
+    for (std::size_t i = 0; i < views.size();) {
+        std::size_t end = i + 1;
+        const std::uint64_t step = end < views.size() ? views[end] - views[i] : 1;
+        while (end < views.size() && views[end] - views[end - 1] == step)
+            ++end;
+        if (end - i < 3) end = step == 1 ? end : i + 1;
+        text += fmt::format("{}{}", text.empty() ? "" : ",", views[i]);
+        if (end - i > 1) text += fmt::format("-{}{}", views[end - 1], step == 1 ? "" : fmt::format(":{}", step));
+        i = end;
+    }
+    return text;
+}
+
 } // namespace tetrace

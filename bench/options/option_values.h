@@ -23,6 +23,9 @@ namespace tetrace {
 /// Throws Error{usage}: the value is not accepted; lists the accepted ones.
 [[noreturn]] void reject_value(const std::string& option, const std::string& value, const std::string& accepted);
 /// The same, with a guess which of the names was meant. more: what else is accepted, such as " or a file".
+/// As --views takes them: "0-3", "0-1281:20", "0,5,6".
+[[nodiscard]] std::string views_text(const std::vector<std::uint64_t>& views);
+
 [[noreturn]] void reject_name(const std::string& option, const std::string& value,
                               const std::vector<std::string>& names, const std::string& more = {});
 

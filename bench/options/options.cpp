@@ -142,6 +142,8 @@ void check_together(const Options& options)
     require_views(options);
     if (options.defects && !shard_of(options).is_whole())
         throw Error(ErrorKind::usage, "--defects takes only seconds and cannot be sharded; leave out --shard");
+    if (options.brief && !options.columns.empty())
+        throw Error(ErrorKind::usage, "--columns: --brief has columns of its own; leave one of them out");
     if (options.verb == Verb::trace) check_ray(options);
     if (options.verb == Verb::dump) check_dump(options);
 }

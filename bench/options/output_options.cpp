@@ -25,7 +25,8 @@ std::vector<OptionRow> expectation_options()
          "(tests/expected/README.md). A failure that it lists passes; a new failure and an unexpected pass exit with "
          "1. What it does not mention is expected to conform. May be repeated, or a list with commas. Default: all "
          "conforms.",
-         bit(Verb::check), true, [](Options& o, const std::string& v) { o.expected.emplace_back(v); }},
+         bit(Verb::check), true, append_path("--expect", &Options::expected),
+         usual_for(every_verb, "known failures: a file or folder of --write-expect")},
         {"Expectations", "--write-expect", "PATH",
          "Write what this run showed, for --expect: into one file if PATH ends in .json, else into a folder with a "
          "file for each implementation. What is there is updated. Default: none.",
@@ -62,7 +63,8 @@ std::vector<OptionRow> output_options()
         {"Output", "--brief", "",
          "Print one screen: the machine, the five most telling rows, the score, what is compared, and whether to trust "
          "it. Files have everything.",
-         bit(Verb::bench) | bit(Verb::show), false, set(&Options::brief)},
+         bit(Verb::bench) | bit(Verb::show), false, set(&Options::brief),
+         usual_for(every_verb, "one screen, with a score")},
         {"Output", "--label", "TEXT",
          "Name of this machine in the result, in 'report' and in 'compare', for example 'Zen 5, 96 cores'. Default: "
          "the CPU's name, family, model and stepping.",

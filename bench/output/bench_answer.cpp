@@ -112,6 +112,14 @@ std::string apis_text(const BenchResult& result)
 
 } // namespace
 
+Steadiness steadiness_of(const BenchResult& result)
+{
+    Steadiness steadiness{result.measurement.load, result.measurement.pulses, result.conditions};
+    for (const RowRecord& row : result.rows)
+        steadiness.count(row);
+    return steadiness;
+}
+
 Sheet answer_of(const BenchResult& result)
 {
     const auto contests = ranked_contests(result);
@@ -124,12 +132,7 @@ Sheet answer_of(const BenchResult& result)
     std::string compared = structures_text(contests);
     if (const std::string apis = apis_text(result); !apis.empty()) compared += (compared.empty() ? "" : ". ") + apis;
     if (!compared.empty()) sheet.labelled("Compared", compared + ".");
-    if (is_timed(result)) {
-        Steadiness steadiness{result.measurement.load, result.measurement.pulses, result.conditions};
-        for (const RowRecord& row : result.rows)
-            steadiness.count(row);
-        sheet.labelled("Trust", trust_text(steadiness));
-    }
+    if (is_timed(result)) sheet.labelled("Trust", trust_text(steadiness_of(result)));
     return sheet;
 }
 

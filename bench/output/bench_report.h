@@ -54,6 +54,9 @@ struct BenchResult {
 /// whether to trust the rates. Empty if nothing was timed.
 [[nodiscard]] Sheet answer_of(const BenchResult& result);
 
+/// Of a run that was timed.
+[[nodiscard]] Steadiness steadiness_of(const BenchResult& result);
+
 /// What the fields of each row are read from.
 [[nodiscard]] std::vector<RowFacts> facts_of(const BenchResult& result);
 

@@ -149,12 +149,7 @@ Sheet brief_sheet(const BenchResult& result)
     sheet.labelled("No rate", without_rate(result.rows));
     if (result.interrupted) sheet.labelled("Stopped", interrupted_sentence);
     sheet.labelled("Compared", compared_text(result));
-    if (is_timed(result)) {
-        Steadiness steadiness{result.measurement.load, result.measurement.pulses};
-        for (const RowRecord& row : result.rows)
-            steadiness.count(row);
-        sheet.labelled("Trust", trust_text(steadiness));
-    }
+    if (is_timed(result)) sheet.labelled("Trust", trust_text(steadiness_of(result)));
     return sheet;
 }
 

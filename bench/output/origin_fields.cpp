@@ -1,3 +1,4 @@
+#include "bench/options/option_values.h"
 #include "bench/output/field_parts.h"
 #include "bench/output/row_fields.h"
 
@@ -35,23 +36,6 @@ auto of_scene(Read read)
                 if (scene.name == facts.row->key.scene) return json(read(scene));
         return json();
     };
-}
-
-/// As --views takes them: "0-3", "0-1281:20", "0,5,6".
-std::string views_text(const std::vector<std::uint64_t>& views)
-{
-    std::string text;
-    for (std::size_t i = 0; i < views.size();) {
-        std::size_t end = i + 1;
-        const std::uint64_t step = end < views.size() ? views[end] - views[i] : 1;
-        while (end < views.size() && views[end] - views[end - 1] == step)
-            ++end;
-        if (end - i < 3) end = step == 1 ? end : i + 1;
-        text += fmt::format("{}{}", text.empty() ? "" : ",", views[i]);
-        if (end - i > 1) text += fmt::format("-{}{}", views[end - 1], step == 1 ? "" : fmt::format(":{}", step));
-        i = end;
-    }
-    return text;
 }
 
 } // namespace

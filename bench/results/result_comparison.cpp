@@ -92,11 +92,15 @@ const ResultScene& scene_of(const ResultFile& file, const ResultRow& row)
                             file.path.string(), row.name, row.scene));
 }
 
+std::string different_rays(const ResultFile& a, const ResultRow& row_a, const ResultFile& b, const ResultRow& row_b)
+{
+    if (row_a.scene.empty()) return {};
+    return other_work(scene_of(a, row_a), scene_of(b, row_b), row_a.structure == "bvh");
+}
+
 std::string different_work(const ResultFile& a, const ResultRow& row_a, const ResultFile& b, const ResultRow& row_b)
 {
-    std::string difference = row_a.scene.empty()
-                                 ? other_searches(a, b)
-                                 : other_work(scene_of(a, row_a), scene_of(b, row_b), row_a.structure == "bvh");
+    std::string difference = row_a.scene.empty() ? other_searches(a, b) : different_rays(a, row_a, b, row_b);
     if (difference.empty()) difference = other_launches(launches_of(a, row_a), launches_of(b, row_b));
     return difference.empty() ? other_answers(row_a, row_b) : difference;
 }

@@ -18,6 +18,11 @@ namespace tetrace {
 [[nodiscard]] std::string different_work(const ResultFile& a, const ResultRow& row_a, const ResultFile& b,
                                          const ResultRow& row_b);
 
+/// The part of that which is known before any answer: what rays are traced through what, and the options that would do
+/// A's work again. Empty for exit searches. Throws as scene_of() does.
+[[nodiscard]] std::string different_rays(const ResultFile& a, const ResultRow& row_a, const ResultFile& b,
+                                         const ResultRow& row_b);
+
 /// Equal texts are the same rays through the same scene, or the same searches. Throws as scene_of() does.
 [[nodiscard]] std::string rays_of(const ResultFile& file, const ResultRow& row);
 

@@ -1,5 +1,6 @@
 #include "bench/results/work_recipe.h"
 
+#include "bench/options/option_values.h"
 #include "bench/terminal/text.h"
 #include "core/rays/camera_set.h"
 #include "scenes/pinned.h"
@@ -18,21 +19,6 @@ const PinnedScene* pinned_of(const ResultScene& scene)
     std::uint64_t hash = 0;
     std::from_chars(scene.hash.data(), scene.hash.data() + scene.hash.size(), hash, 16);
     return pinned_with(hash);
-}
-
-/// "0-3": consecutive views as ranges.
-std::string views_text(const std::vector<std::uint64_t>& views)
-{
-    std::string text;
-    for (std::size_t i = 0; i < views.size();) {
-        std::size_t end = i + 1;
-        while (end < views.size() && views[end] == views[end - 1] + 1)
-            ++end;
-        text += fmt::format("{}{}", text.empty() ? "" : ",", views[i]);
-        if (end > i + 1) text += fmt::format("-{}", views[end - 1]);
-        i = end;
-    }
-    return text;
 }
 
 /// The texts are of a file, and become a part of a command line.

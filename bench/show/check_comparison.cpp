@@ -133,8 +133,9 @@ Table all_items_table(const CheckComparison& comparison)
 std::string compared_text(const CheckComparison& comparison)
 {
     std::string text;
-    for (const CheckChange change : {CheckChange::became_wrong, CheckChange::became_right, CheckChange::changed,
-                                     CheckChange::added, CheckChange::missing, CheckChange::same})
+    for (const CheckChange change :
+         {CheckChange::became_wrong, CheckChange::became_right, CheckChange::changed, CheckChange::added,
+          CheckChange::missing, CheckChange::different, CheckChange::same})
         if (const std::size_t count = comparison.count(change); count > 0)
             append_item(text, ", ", fmt::format("{} {}", count, name_of(change)));
     return fmt::format("{}, self-tests included: {}.", counted(comparison.items.size(), "result", "results"), text);
@@ -176,6 +177,7 @@ bool is_check(const ResultFile& file)
 
 std::string ComparedItem::note() const
 {
+    if (!difference.empty()) return difference;
     for (const auto& [label, item] : {std::pair("B", &after), std::pair("A", &before)}) {
         if (!*item) return fmt::format("{}: no such row", label);
         if (!(*item)->reason.empty()) return fmt::format("{}: {}: {}", label, (*item)->finding, (*item)->reason);
@@ -209,6 +211,21 @@ CheckComparison compare_checks(const ResultFile& before, const ResultFile& after
     if (comparison.items.empty())
         reject(filter.empty() ? ErrorKind::invalid_input : ErrorKind::usage,
                filter.empty() ? "neither has a result" : fmt::format("--filter '{}' matches no row", filter));
+    bool any_same = false, any_shared = false;
+    for (ComparedItem& item : comparison.items) {
+        const ResultRow *const a = before.find_row(item.name()), *const b = after.find_row(item.name());
+        if (a == nullptr || b == nullptr) continue;
+        any_shared = true;
+        item.difference = different_rays(before, *a, after, *b);
+        if (!item.difference.empty()) item.change = CheckChange::different;
+        any_same = any_same || item.difference.empty();
+    }
+    if (any_shared && !any_same)
+        reject(ErrorKind::invalid_input,
+               fmt::format(
+                   "no row did the same work in both; {}: {}",
+                   std::ranges::find(comparison.items, CheckChange::different, &ComparedItem::change)->name(),
+                   std::ranges::find(comparison.items, CheckChange::different, &ComparedItem::change)->difference));
     if (std::ranges::none_of(comparison.items, [](const ComparedItem& item) { return item.before && item.after; }))
         reject(ErrorKind::invalid_input, fmt::format("they share no row; one has {}", comparison.items.front().name()));
     return comparison;

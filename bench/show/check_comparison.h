@@ -11,11 +11,13 @@ namespace tetrace {
 
 [[nodiscard]] bool is_check(const ResultFile& file);
 
-/// How an item of two checks compares. changed: another result, and neither fails, or both do.
-enum class CheckChange { same, changed, became_right, became_wrong, added, missing };
+/// How an item of two checks compares. changed: another result, and neither fails, or both do. different: of other
+/// work.
+enum class CheckChange { same, changed, became_right, became_wrong, added, missing, different };
 template <>
-inline constexpr auto enum_names<CheckChange> = names_up_to<CheckChange::missing>("SAME", "CHANGED", "BECAME RIGHT",
-                                                                                  "BECAME WRONG", "NEW", "MISSING");
+inline constexpr auto enum_names<CheckChange> = names_up_to<CheckChange::different>("SAME", "CHANGED", "BECAME RIGHT",
+                                                                                    "BECAME WRONG", "NEW", "MISSING",
+                                                                                    "DIFFERENT");
 
 /// A row, an item of a device's self-test, or a reduced kernel on a device, as a check found it.
 struct CheckedItem {
@@ -31,6 +33,7 @@ struct CheckedItem {
 struct ComparedItem {
     std::optional<CheckedItem> before, after; ///< one of them is there
     CheckChange change = CheckChange::same;
+    std::string difference = {}; ///< of different ones: what differs
 
     [[nodiscard]] const std::string& name() const { return (before ? before : after)->name; }
     /// Why it fails or has no result in B; else in A; else empty.
@@ -49,8 +52,9 @@ struct CheckComparison {
 };
 
 /// Compares items of equal names, of those whose name the regular expression matches (empty: all); self-tests of
-/// devices that both have. Precondition: both are checks. Throws Error{invalid_input} if they share no item, or a row
-/// is not one of this tetrace's; Error{usage} if the expression matches none.
+/// devices that both have. Rows that did different work (different_rays()) are not compared. Precondition: both are
+/// checks. Throws Error{invalid_input} if they share no item, if all shared rows did different work, or if a row is not
+/// one of this tetrace's; Error{usage} if the expression matches none.
 [[nodiscard]] CheckComparison compare_checks(const ResultFile& before, const ResultFile& after,
                                              const std::string& filter);
 

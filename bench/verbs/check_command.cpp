@@ -106,7 +106,7 @@ Options with_default_layouts(Options options)
 std::vector<RowRecord> verify_once(const std::vector<RowKey>& keys, const Options& options, Journal* journal,
                                    Checked& checked)
 {
-    Budget budget(options.budget_s / options.repeat);
+    Budget budget(options.budget_s);
     SceneRows run = open_and_verify(keys, options,
                                     [&](const SeenImage& image) {
                                         if (checked.pictures != nullptr) checked.pictures->see(image);
@@ -250,6 +250,8 @@ void require_whole_rows(const Options& options)
                "leave one of them out");
     if (options.repeat > 1 && options.resume)
         reject("--repeat: a journal has each view once, so repetitions cannot be resumed; leave out --resume");
+    if (options.defects && (options.resume || options.picture_folder || options.allow_flawed))
+        reject("--defects runs small kernels, and no rows; leave out --resume, --differences and --allow-flawed");
     if (options.repeat > 1 && options.defects)
         reject("--repeat repeats rows, and --defects has none; leave one of them out");
     if (options.repeat > 1 && is_shard) reject("--repeat: shards have no repetitions; leave out --shard");

@@ -12,7 +12,7 @@ namespace tetrace {
 
 namespace {
 
-/// Both of two, or none: a check has verdicts, and no times. tolerance and missing rows are of times.
+/// Both of two, or none: a check has verdicts, and no times, which a tolerance is of.
 bool are_checks(const std::vector<ResultFile>& files, const Options& options)
 {
     const auto checks = std::ranges::count_if(files, is_check);

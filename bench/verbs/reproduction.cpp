@@ -146,9 +146,7 @@ void make_tables(Reproduction& all, const Options& options)
 
 Report rival_report(const BenchResult& result, const std::vector<PaperTable>& tables, const Options& options)
 {
-    Steadiness steadiness{result.measurement.load, result.measurement.pulses, result.conditions};
-    for (const RowRecord& row : result.rows)
-        steadiness.count(row);
+    const Steadiness steadiness = steadiness_of(result);
     const PaperTables all = {tables,
                              {},
                              result.missing_scenes,

@@ -143,7 +143,7 @@ private:
         const auto [group, new_group] = groups_.try_emplace(rate.group, campaign_.groups.size());
         if (new_group) campaign_.groups.push_back({rate.title, rate.hash, rate.machine.kind, {}});
         auto& works = campaign_.groups[group->second].works;
-        const auto [work, new_work] = works_.try_emplace(rate.work, works.size());
+        const auto [work, new_work] = works_.try_emplace(rate.group + "\n" + rate.work, works.size());
         if (new_work) works.push_back({rate.label, rate.application, {}});
         return works[work->second];
     }
