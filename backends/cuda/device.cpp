@@ -66,6 +66,7 @@ void describe_driver(Device& device, const Driver& driver)
 Device describe(const Driver& driver, Ordinal ordinal)
 {
     Device device;
+    device.library = library_holding(reinterpret_cast<const void*>(driver.init));
     std::array<char, 256> name{};
     driver.device_name(name.data(), name.size() - 1, ordinal);
     device.name = name.data();

@@ -204,8 +204,8 @@ std::vector<OptionRow> row_options()
          "device and a kernel of the structures kept.",
          reproducing | bit(Verb::dump), true, append_backend("--backend", &Options::backends)},
         {"Rows", "--device", "TEXT",
-         "Keep the rows of the devices whose name, driver, type, id or number contains TEXT, ignoring case, for "
-         "example 'gpu', 'llvmpipe' or 'vulkan:1' (the second device of vulkan). Exit code 3 if a TEXT matches "
+         "Keep the rows of the devices whose name, driver, type, id, number or driver's library contains TEXT, ignoring "
+         "case, for example 'gpu', 'llvmpipe', 'vulkan:1' (the second device of vulkan) or '/opt/mesa/'. Exit code 3 if a TEXT matches "
          "none. Default: all.",
          reproducing | bit(Verb::dump), true, append_text(&Options::devices)},
         {"Rows", "--rays", "KIND",
@@ -213,11 +213,11 @@ std::vector<OptionRow> row_options()
          "host, from the primary hits: 'shadow', towards a light, and 'ao', short rays in directions around the "
          "normal (for both, any hit will do); 'diffuse', one bounce; 'random', lines through the domain. Default: "
          "primary.",
-         measuring | bit(Verb::trace), true, append("--rays", &Options::rays)},
+         measuring | bit(Verb::trace) | bit(Verb::dump), true, append("--rays", &Options::rays)},
         {"Rows", "--ray-order", "ORDER",
          "Order of the rays of all kinds except primary: 'tiles', in the order of their pixels; 'morton', sorted by "
          "origin and direction; 'shuffled'. Each is a separate row. Default: tiles.",
-         measuring | bit(Verb::trace), true, append("--ray-order", &Options::ray_orders)},
+         measuring | bit(Verb::trace) | bit(Verb::dump), true, append("--ray-order", &Options::ray_orders)},
         {"Rows", "--math", "MODE",
          "'exact': no contraction to FMAs, the same bits everywhere; 'fast': the compiler may contract. Embree has "
          "one build, whose rows appear in both modes. Default: exact.",
@@ -227,7 +227,7 @@ std::vector<OptionRow> row_options()
          "no ray from outside reaches are last; 'chains', as 'reached', but each tet is followed by its neighbour "
          "across its largest free face; 'input', as TetGen wrote them. Only for rows of structure cdt. Default: "
          "chains.",
-         tracing, true, append("--order", &Options::orders)},
+         tracing | bit(Verb::dump), true, append("--order", &Options::orders)},
         {"Rows", "--schedule", "NAME",
          "How work items get their rays: 'tiles', one ray each; 'persistent', work items fetch rays until all are "
          "traced, on the backends with such kernels; 'packets', 4, 8 or 16 rays in lockstep on openmp, for project "
@@ -245,7 +245,7 @@ std::vector<OptionRow> row_options()
 
 std::vector<OptionRow> ray_options()
 {
-    const unsigned with_rays = reproducing | bit(Verb::build);
+    const unsigned with_rays = building;
     return {
         {"Rays", "--camera-set", "SET",
          "'frame', 4 views that the scene fills: close views of a mesh, and special cameras for " +
@@ -253,14 +253,14 @@ std::vector<OptionRow> ray_options()
              "; 'smoke', 4 views at 2 radii, in which a closed object fills a sixth of the "
              "image; 'orbit', 1,282 views on a sphere of 2 radii; 'flight', 1,282 views from 1.2 to 2.9 radii; or a "
              ".json file with your own cameras (docs/cameras.md). Default: frame.",
-         tracing | bit(Verb::build), false, set_cameras},
+         tracing | bit(Verb::build) | bit(Verb::dump), false, set_cameras},
         {"Rays", "--views", "LIST",
          "Views of the camera set, numbered from 0: numbers, ranges and strides, for example 0,3,10-20 or "
          "0-1281:64. Default: all; for 'bench' without --scene and with frame, 0 and 1.",
-         with_rays & ~bit(Verb::trace), true,
+         with_rays & ~bit(Verb::trace) & ~bit(Verb::dump), true,
          [](Options& o, const std::string& v) { o.views += (o.views.empty() ? "" : ",") + v; }},
         {"Rays", "--size", "WxH",
-         "Image size in pixels, one ray each; N means NxN. Default: 1024x1024; for 'check' and 'trace' 256x256, for "
+         "Image size in pixels, one ray each; N means NxN. Default: 1024x1024; for 'check', 'trace' and 'dump' 256x256, for "
          "'reproduce rivals' 512x512.",
          with_rays, false,
          [](Options& o, const std::string& v) { std::tie(o.width, o.height) = parse_size("--size", v); }},

@@ -17,6 +17,7 @@ struct JunitCase {
     CaseOutcome outcome = CaseOutcome::passed;
     std::string reason; ///< where it did not pass
     double time_s = 0;
+    std::string library = {}; ///< of the driver; becomes a property, too
 };
 
 /// The rows of `tetrace check` as JUnit XML, valid by the schema of Jenkins' xUnit plugin (junit-10.xsd), which GitLab

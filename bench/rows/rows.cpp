@@ -265,8 +265,9 @@ std::string numbered_backend(const RowKey& key)
 bool wanted_device(const Options& options, const Backend& backend, std::size_t index)
 {
     const Device& device = backend.devices()[index];
-    const std::string what = in_lower_case(fmt::format("{}\n{}\n{}\n{}\n{}:{}", device.name, device.driver,
-                                                       name_of(device.kind), device.id, backend.name(), index));
+    const std::string what = in_lower_case(fmt::format("{}\n{}\n{}\n{}\n{}\n{}:{}", device.name, device.driver,
+                                                       name_of(device.kind), device.id, device.library,
+                                                       backend.name(), index));
     const auto holds = [&](const std::string& text) { return what.find(in_lower_case(text)) != std::string::npos; };
     return options.devices.empty() || std::ranges::any_of(options.devices, holds);
 }
