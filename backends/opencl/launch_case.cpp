@@ -20,10 +20,8 @@ LaunchCase case_of(const FoundDevice& device, const ProgramId& id, const std::st
     };
     LaunchCase made;
     made.program = {id.source + ".cl", "the program, OpenCL C with its includes resolved", {}, text(id.source)};
-    made.host = {"run_case.c",
-                 "a host in C, whose head explains case.txt",
-                 "cc -O1 -o run_case run_case.c -l:libOpenCL.so.1 && ./run_case",
-                 text("run_case")};
+    made.host = {"run_case.c", "a host in C, whose head explains case.txt",
+                 "cc -O1 -o run_case run_case.c -l:libOpenCL.so.1 && ./run_case", text("run_case")};
     made.lines = {"options " + build_options(device, id), "entry " + entry, "items " + std::to_string(items)};
     return made;
 }
@@ -45,22 +43,22 @@ LaunchCase tile_case(const Device& device, const KernelId& kernel, const PackedS
     FoundDevice found;
     found.facts = device;
     found.stack_top = device.kind == DeviceKind::gpu ? STACK_TOP_OF_GPUS : 0;
-    const bool starts_outside = kernel.task == Task::trace && kernel.structure == Structure::cdt &&
-                                launch.start_tet == NO_TET;
+    const bool starts_outside =
+        kernel.task == Task::trace && kernel.structure == Structure::cdt && launch.start_tet == NO_TET;
     const std::string defines = defines_of(kernel, launch.tile_height, false, starts_outside, found.stack_top);
-    LaunchCase made = case_of(found, {source_name(kernel), kernel.math, defines}, "run_image",
-                              TILE_WIDTH * launch.tile_height);
+    LaunchCase made =
+        case_of(found, {source_name(kernel), kernel.math, defines}, "run_image", TILE_WIDTH * launch.tile_height);
     const std::uint32_t end_tile = launch.first_tile + 1, counter = 0;
-    made.inputs = {input("value", launch_argument, "launch", "LaunchParams of the program", std::span(&launch, 1)),
-                   input("value", end_tile_argument, "end_tile", "the first tile that is not traced",
-                         std::span(&end_tile, 1)),
-                   input("buffer", counter_argument, "counter", "not read by this program", std::span(&counter, 1)),
-                   input("buffer", rays_argument, "rays", "given rays, two quads each", rays)};
+    made.inputs = {
+        input("value", launch_argument, "launch", "LaunchParams of the program", std::span(&launch, 1)),
+        input("value", end_tile_argument, "end_tile", "the first tile that is not traced", std::span(&end_tile, 1)),
+        input("buffer", counter_argument, "counter", "not read by this program", std::span(&counter, 1)),
+        input("buffer", rays_argument, "rays", "given rays, two quads each", rays)};
     const auto buffers = scene_buffers(scene);
     cl_uint argument = first_array_argument;
     for (const SceneArray& array : scene_arrays(kernel.layout))
-        made.inputs.push_back(input("buffer", argument++, buffers[array.binding].name,
-                                    "an array of the packed scene", buffers[array.binding].bytes));
+        made.inputs.push_back(input("buffer", argument++, buffers[array.binding].name, "an array of the packed scene",
+                                    buffers[array.binding].bytes));
     made.output = output_argument;
     return made;
 }

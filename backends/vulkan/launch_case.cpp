@@ -27,8 +27,7 @@ LaunchCase case_of(std::span<const EmbeddedKernel> kernels, const std::string& n
 {
     LaunchCase made;
     made.program = {name + ".spv", "the program, SPIR-V", {}, code_of(kernels, name)};
-    made.host = {"run_case.c",
-                 "a host in C, whose head explains case.txt",
+    made.host = {"run_case.c", "a host in C, whose head explains case.txt",
                  "cc -O1 -o run_case run_case.c -l:libvulkan.so.1 && ./run_case",
                  code_of(embedded_kernels(), "run_case")};
     made.lines = {"entry main"};
@@ -38,8 +37,7 @@ LaunchCase case_of(std::span<const EmbeddedKernel> kernels, const std::string& n
 LaunchCase::Input case_input(const std::string& line, const std::string& name, const std::string& what,
                              std::span<const std::byte> bytes)
 {
-    return {line,
-            {name + ".bin", what, {}, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size())}};
+    return {line, {name + ".bin", what, {}, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size())}};
 }
 
 /// The line of an array that is read as texels, or from a storage buffer.

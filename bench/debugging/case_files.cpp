@@ -139,10 +139,10 @@ std::vector<Quad> quads_of_case(SceneWork& scene, const RowRun& row)
 
 std::string title_of_tile(const SceneWork& scene, const RowKey& key, const Backend& backend, const Options& options)
 {
-    std::string title = fmt::format("{} on {}: the work-group of pixel {},{} of {} x {}, view {} of {}, scene {}",
-                                    name_of(key.kernel), backend.name(), options.pixel->x, options.pixel->y,
-                                    scene.width(), scene.height(), scene.view_numbers().front(),
-                                    camera_set_name(options), scene.label());
+    std::string title =
+        fmt::format("{} on {}: the work-group of pixel {},{} of {} x {}, view {} of {}, scene {}", name_of(key.kernel),
+                    backend.name(), options.pixel->x, options.pixel->y, scene.width(), scene.height(),
+                    scene.view_numbers().front(), camera_set_name(options), scene.label());
     if (key.rays != RayKind::primary) title += fmt::format(", {} rays", name_of(key.rays));
     return title;
 }
@@ -165,8 +165,7 @@ DumpedCase tile_case(const Options& options, const Backend& backend)
     const PackedScene& packed = row.packed->data;
     LaunchParams launch = launch_params(job, domain_of(packed), tile_height_of({}), TetParts{}.log2_bytes);
     const std::uint32_t columns = (job.width + TILE_WIDTH - 1) / TILE_WIDTH;
-    launch.first_tile =
-        number / job.width / launch.tile_height * columns + number % job.width / TILE_WIDTH;
+    launch.first_tile = number / job.width / launch.tile_height * columns + number % job.width / TILE_WIDTH;
     const auto made = backend.tile_case(target, key.kernel, packed, launch, quads_of_case(scene, row));
     if (!made) refuse_case(backend);
     return files_of_case(*made, output_of_tile(launch, hits), title_of_tile(scene, key, backend, options));

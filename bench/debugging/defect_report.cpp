@@ -279,8 +279,8 @@ std::string defect_junit(const std::vector<DefectRun>& runs, const std::string& 
     std::vector<JunitCase> cases;
     for (const DefectRun& run : runs)
         cases.push_back({run.backend, label_of(run.backend, run.device_index), run.device.name, run.device.driver,
-                         "defect/" + std::string(run.defect->name), outcome_of(run.sight), detail_of(run),
-                         run.seconds, run.device.library});
+                         "defect/" + std::string(run.defect->name), outcome_of(run.sight), detail_of(run), run.seconds,
+                         run.device.library});
     return junit_suite("defects", cases, problem);
 }
 

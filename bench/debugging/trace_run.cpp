@@ -20,7 +20,8 @@ KernelId our_kernel(const Options& options)
     for (const auto& [option, count] :
          {std::pair("--order", options.orders.size()), std::pair("--rays", options.rays.size()),
           std::pair("--ray-order", options.ray_orders.size())})
-        if (count > 1) throw Error(ErrorKind::usage, fmt::format("{}: {} accepts one value here", name_of(options.verb), option));
+        if (count > 1)
+            throw Error(ErrorKind::usage, fmt::format("{}: {} accepts one value here", name_of(options.verb), option));
     const KernelId kernel = one_kernel(options);
     if (!is_portable(kernel))
         throw Error(ErrorKind::usage,

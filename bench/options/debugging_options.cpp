@@ -73,7 +73,9 @@ std::vector<OptionRow> trace_options()
          bit(Verb::dump), false, set_defect},
         {"Ray", "--view", "N", "The view of the camera set, numbered from 0. Default: 0.", with_ray, false,
          [](Options& o, const std::string& v) { o.views = fmt::format("{}", parse_count("--view", v, 0, 1u << 30)); }},
-        {"Ray", "--pixel", "X,Y", "The pixel whose ray is traced; of 'dump', the case is the work-group of that ray. 0,0 is the image's upper left. "
+        {"Ray", "--pixel", "X,Y",
+         "The pixel whose ray is traced; of 'dump', the case is the work-group of that ray. 0,0 is the image's upper "
+         "left. "
          "Required; of 'dump' with --scene.",
          with_ray, false, [](Options& o, const std::string& v) { o.pixel = parse_pixel("--pixel", v); }},
     };

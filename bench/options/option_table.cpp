@@ -204,8 +204,10 @@ std::vector<OptionRow> row_options()
          "device and a kernel of the structures kept.",
          reproducing | bit(Verb::dump), true, append_backend("--backend", &Options::backends)},
         {"Rows", "--device", "TEXT",
-         "Keep the rows of the devices whose name, driver, type, id, number or driver's library contains TEXT, ignoring "
-         "case, for example 'gpu', 'llvmpipe', 'vulkan:1' (the second device of vulkan) or '/opt/mesa/'. Exit code 3 if a TEXT matches "
+         "Keep the rows of the devices whose name, driver, type, id, number or driver's library contains TEXT, "
+         "ignoring "
+         "case, for example 'gpu', 'llvmpipe', 'vulkan:1' (the second device of vulkan) or '/opt/mesa/'. Exit code 3 "
+         "if a TEXT matches "
          "none. Default: all.",
          reproducing | bit(Verb::dump), true, append_text(&Options::devices)},
         {"Rows", "--rays", "KIND",
@@ -260,7 +262,8 @@ std::vector<OptionRow> ray_options()
          with_rays & ~bit(Verb::trace) & ~bit(Verb::dump), true,
          [](Options& o, const std::string& v) { o.views += (o.views.empty() ? "" : ",") + v; }},
         {"Rays", "--size", "WxH",
-         "Image size in pixels, one ray each; N means NxN. Default: 1024x1024; for 'check', 'trace' and 'dump' 256x256, for "
+         "Image size in pixels, one ray each; N means NxN. Default: 1024x1024; for 'check', 'trace' and 'dump' "
+         "256x256, for "
          "'reproduce rivals' 512x512.",
          with_rays, false,
          [](Options& o, const std::string& v) { std::tie(o.width, o.height) = parse_size("--size", v); }},

@@ -163,8 +163,8 @@ void check_single(const Options& options, const char* name, std::size_t count)
 void check_ray(const Options& options)
 {
     if (options.scenes.size() != 1)
-        throw Error(ErrorKind::usage,
-                    fmt::format("{}: --scene accepts one scene; {} are given", name_of(options.verb), options.scenes.size()));
+        throw Error(ErrorKind::usage, fmt::format("{}: --scene accepts one scene; {} are given", name_of(options.verb),
+                                                  options.scenes.size()));
     if (!options.pixel)
         throw Error(ErrorKind::usage, fmt::format("{}: --pixel X,Y is missing: which ray?", name_of(options.verb)));
     if (options.pixel->x >= options.width || options.pixel->y >= options.height)

@@ -97,13 +97,24 @@ Table device_table(const std::vector<ApiDevice>& devices)
                  {"reason", "reason"}});
     for (const ApiDevice& found : devices) {
         const Device& device = found.device;
-        table.add({backend_of(found), found.label, device.name, std::string(name_of(device.kind)),
-                   text_cell(device.driver), text_cell(device.implementation), std::uint64_t{found.physical},
-                   text_cell(device.id), text_cell(device.uuid), text_cell(device.pci), text_cell(device.library),
+        table.add({backend_of(found),
+                   found.label,
+                   device.name,
+                   std::string(name_of(device.kind)),
+                   text_cell(device.driver),
+                   text_cell(device.implementation),
+                   std::uint64_t{found.physical},
+                   text_cell(device.id),
+                   text_cell(device.uuid),
+                   text_cell(device.pci),
+                   text_cell(device.library),
                    std::uint64_t{device.threads},
-                   count_cell(device.memory_bytes), count_cell(device.max_buffer_bytes),
-                   count_cell(device.max_group_items), count_cell(device.group_width),
-                   device.timer_period_s > 0 ? Cell(device.timer_period_s) : Cell(), text_cell(found.self_test_text),
+                   count_cell(device.memory_bytes),
+                   count_cell(device.max_buffer_bytes),
+                   count_cell(device.max_group_items),
+                   count_cell(device.group_width),
+                   device.timer_period_s > 0 ? Cell(device.timer_period_s) : Cell(),
+                   text_cell(found.self_test_text),
                    std::string(device.usable         ? "usable"
                                : device.compile_only ? "compile only"
                                                      : "missing"),

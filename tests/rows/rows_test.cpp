@@ -133,10 +133,10 @@ TEST(Rows, devices_are_chosen_by_a_part_of_what_describes_them_in_any_case)
     EXPECT_EQ(indices("EMULATED"), std::vector<std::size_t>{1});
     EXPECT_EQ(indices("radeon,pipe"), (std::vector<std::size_t>{0, 1}));
     for (const char* const text : {"geforce", "radeon,geforce"})
-        EXPECT_EQ(
-            error_of([&] { static_cast<void>(indices(text)); }),
-            "missing: --device: no device's name contains geforce (nor its driver, type, id or number); there are: "
-            "Radeon (old), llvmpipe (old:1)");
+        EXPECT_EQ(error_of([&] { static_cast<void>(indices(text)); }),
+                  "missing: --device: no device's name contains geforce (nor its driver, library, type, id or number); "
+                  "there are: "
+                  "Radeon (old), llvmpipe (old:1)");
 }
 
 TEST(Rows, an_api_without_a_device_has_rows_only_where_it_is_asked_for)
