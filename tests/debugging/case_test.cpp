@@ -71,9 +71,9 @@ TEST_P(Case, of_a_reduced_kernel_shows_the_defect_exactly_where_check_sees_it)
 TEST_P(Case, of_a_scene_gives_openmps_hits_for_tets_and_bvhs_and_all_kinds_of_rays)
 {
     if (const std::string reason = why_no_host(); !reason.empty()) GTEST_SKIP() << reason;
-    for (const std::string kernel : {"--method maria --layout tet80", "--layout bvh2 --rays diffuse",
-                                     "--method project --layout half32 --domain wide --device emulated",
-                                     "--layout cwbvh --device emulated"}) {
+    for (const std::string kernel :
+         {"--method maria --layout tet80", "--layout bvh2 --rays diffuse",
+          "--method project --layout half32 --domain wide --device emulated", "--layout cwbvh --device emulated"}) {
         const Ended ended = dump(tile + kernel);
         if (ended.code == 3) continue; // no emulated device
         ASSERT_EQ(ended.code, 0) << ended.errors;
