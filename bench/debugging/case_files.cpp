@@ -88,8 +88,8 @@ Device case_target(const Options& options, const Backend& backend)
     gpu.kind = DeviceKind::gpu;
     if (options.devices.empty()) return gpu;
     for (std::size_t i = 0; i < backend.devices().size(); ++i)
-        if (wanted_device(options, backend, i)) return backend.devices()[i];
-    throw Error(ErrorKind::missing, fmt::format("--device: no device of {} matches", backend.name()));
+        if (backend.devices()[i].usable && wanted_device(options, backend, i)) return backend.devices()[i];
+    throw Error(ErrorKind::missing, fmt::format("--device: no usable device of {} matches", backend.name()));
 }
 
 /// The row of openmp that the expected output is from.
@@ -163,7 +163,8 @@ DumpedCase tile_case(const Options& options, const Backend& backend)
     std::vector<Hit> hits(ray_count(row, 0));
     static_cast<void>(row.session->trace(job, hits));
     const PackedScene& packed = row.packed->data;
-    LaunchParams launch = launch_params(job, domain_of(packed), tile_height_of({}), TetParts{}.log2_bytes);
+    LaunchParams launch =
+        launch_params(job, domain_of(packed), tile_height_of(session_options(options)), TetParts{}.log2_bytes);
     const std::uint32_t columns = (job.width + TILE_WIDTH - 1) / TILE_WIDTH;
     launch.first_tile = number / job.width / launch.tile_height * columns + number % job.width / TILE_WIDTH;
     const auto made = backend.tile_case(target, key.kernel, packed, launch, quads_of_case(scene, row));

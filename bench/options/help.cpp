@@ -174,7 +174,8 @@ const VerbHelp verb_help[] = {
      "bvh2, bvh4, cwbvh) lack steps, because their kernels do not report the nodes they visit; the hits are shown, "
      "and how many nodes and triangles openmp visits. Embree's kernels and a driver's (rt) return only the hit, and "
      "are refused. Exits with 1 if a device differs from openmp, with 2 if the ray does not exist, and with 3 if none "
-     "of the selected devices could trace it.",
+     "of the selected devices could trace it. 'tetrace dump' with the same options, one --backend and --out FOLDER "
+     "writes the ray's work-group as a reproducer.",
      "  tetrace trace --scene cubes --pixel 128,100\n"
      "  tetrace trace --scene bunny --view 2 --pixel 300,17 --size 512 --method project --backend vulkan\n"
      "  tetrace trace --scene cubes --pixel 128,100 --format json --out ray.json\n"},

@@ -272,7 +272,8 @@ std::vector<OptionRow> ray_options()
          "container with a CPU quota, the quota rounded down. Scenes are always built with 0. Default: 0.",
          with_rays, false, set_count("--threads", &Options::threads, 0, 4096)},
         {experiments, "--tile", "WxH", "Pixels per work-group: 8x4 or 8x8. Default: depends on the type of the device.",
-         reproducing, false, [](Options& o, const std::string& v) { o.tile_height = parse_tile_height(v); }},
+         reproducing | bit(Verb::dump), false,
+         [](Options& o, const std::string& v) { o.tile_height = parse_tile_height(v); }},
         {experiments, "--packet-lanes", "N",
          "Rays per packet, for rows of schedule 'packets': 4, 8 or 16. If the CPU or the build does not support "
          "that width, those rows are unsupported. Default: the widest available.",

@@ -72,7 +72,7 @@ TEST_P(Case, of_a_scene_gives_openmps_hits_for_tets_and_bvhs_and_all_kinds_of_ra
 {
     if (const std::string reason = why_no_host(); !reason.empty()) GTEST_SKIP() << reason;
     for (const std::string kernel :
-         {"--method maria --layout tet80", "--layout bvh2 --rays diffuse",
+         {"--method maria --layout tet80 --tile 8x4", "--layout bvh2 --rays diffuse",
           "--method project --layout half32 --domain wide --device emulated", "--layout cwbvh --device emulated"}) {
         const Ended ended = dump(tile + kernel);
         if (ended.code == 3) continue; // no emulated device
