@@ -1,6 +1,7 @@
 #include "backends/cuda/device.h"
 
 #include "core/base/error.h"
+#include "core/base/printable.h"
 #include "core/device/device_facts.h"
 
 #include <algorithm>
@@ -117,6 +118,7 @@ std::vector<Device> list_devices(const LoadedDriver& loaded, const Programs& pro
     for (int i = 0; i < count; ++i) {
         Device& device =
             devices.emplace_back(printable(describe(driver, ordinal_of(driver, static_cast<std::size_t>(i)))));
+        device.library = printable_line(loaded.library);
         device.usable = !programs.code.empty() || programs.has_nvrtc();
         if (!device.usable)
             device.reason = "this program was built without compiled CUDA kernels (nvcc makes them for the GPUs of the "

@@ -1,5 +1,7 @@
 #include "backends/cuda/driver.h"
 
+#include "core/device/device_facts.h"
+
 #include <dlfcn.h>
 
 namespace tetrace::cuda {
@@ -38,7 +40,7 @@ LoadedDriver load_driver(const char* name)
         return {{}, std::string(name) + " is too old for this program, CUDA 11 is needed: it lacks" + missing + remedy};
     if (const Result result = driver.init(0); result != success)
         return {{}, "starting the NVIDIA driver (" + std::string(name) + "): " + text_of(driver, result)};
-    return {driver, {}};
+    return {driver, {}, library_holding(reinterpret_cast<const void*>(driver.init))};
 }
 
 std::string text_of(const Driver& driver, Result result)

@@ -55,7 +55,8 @@ constexpr const char* use_threads_symbol = "tetrace_emulation_use_threads";
 /// The result of looking for a driver: a complete table, or the reason why it cannot be used.
 struct LoadedDriver {
     Driver driver;
-    std::string reason; ///< empty if it can be used; else what is wrong and what to install
+    std::string reason;       ///< empty if it can be used; else what is wrong and what to install
+    std::string library = {}; ///< Device::library
 
     [[nodiscard]] bool usable() const { return reason.empty(); }
 };

@@ -1,6 +1,7 @@
 #include "backends/opencl/backend.h"
 
 #include "backends/opencl/kernels.h"
+#include "backends/opencl/launch_case.h"
 #include "backends/opencl/probe.h"
 #include "backends/opencl/program.h"
 #include "backends/opencl/session.h"
@@ -79,6 +80,16 @@ public:
     [[nodiscard]] std::vector<KernelFile> kernel_files(const KernelId& kernel) const override
     {
         return files_of(kernel);
+    }
+    [[nodiscard]] std::optional<LaunchCase> tile_case(const Device& device, const KernelId& kernel,
+                                                      const PackedScene& scene, const LaunchParams& launch,
+                                                      std::span<const Quad> rays) const override
+    {
+        return opencl::tile_case(device, kernel, scene, launch, rays);
+    }
+    [[nodiscard]] std::optional<LaunchCase> defect_case(std::string_view name) const override
+    {
+        return opencl::defect_case(name);
     }
 
 private:

@@ -62,6 +62,12 @@ std::string pci_of(const cl::Device& device)
     return pci_address(domain, asked<cl_uint>(device, bus_nv), slot >> 3, slot & 7);
 }
 
+/// A driver's entry for ICD loaders (cl_khr_icd) is a function of its own library.
+std::string library_of(const cl::Platform& platform)
+{
+    return library_holding(clGetExtensionFunctionAddressForPlatform(platform(), "clIcdGetPlatformIDsKHR"));
+}
+
 unsigned group_width_of(const cl::Device& device)
 {
     if (has_extension(device, "cl_nv_device_attribute_query")) return asked<cl_uint>(device, CL_DEVICE_WARP_SIZE_NV);
@@ -104,6 +110,7 @@ void describe(const cl::Platform& platform, FoundDevice& found)
     facts.implementation = implementation_of(platform_name, driver_version, platform_version);
     facts.uuid = uuid_of(device);
     facts.pci = pci_of(device);
+    facts.library = library_of(platform);
     facts.id = id_of(facts);
     facts.memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
     facts.max_buffer_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();

@@ -2,27 +2,11 @@
 
 #include "backends/opencl/kernels.h"
 #include "core/base/hash.h"
+#include "kernels/layouts/layout.h"
 
 namespace tetrace::opencl {
 
 namespace {
-
-std::string options_for(const FoundDevice& device, const ProgramId& id)
-{
-    std::string options = "-cl-std=CL1.2 " + id.defines;
-    // Oclgrind 21.10 interprets its optimiser's output, but not llvm.experimental.noalias.scope.decl, which comes from
-    // inlined functions that return structs.
-    if (device.facts.implementation.starts_with("oclgrind")) options += " -cl-opt-disable -DCALLS_FUNCTIONS";
-    // It takes asm statements, at which PoCL 6.0 ends with an assertion. PoCL drives GPUs, too.
-    if (device.facts.implementation.starts_with("pocl-3.") && device.facts.kind != DeviceKind::gpu)
-        options += " -DPREDICTS_BRANCHES";
-    options += math_options(id.math);
-    if (id.math == MathMode::fast) return options;
-    // No decision has denormals (docs/spec/numbers.md, N1). Unused lanes of a processor's vectors may have them, where
-    // compilers compute with all words of a quad, and some processors multiply denormals a hundred times slower.
-    if (device.facts.kind != DeviceKind::gpu) options += " -cl-denorms-are-zero";
-    return device.divides_correctly ? options + " -cl-fp32-correctly-rounded-divide-sqrt" : options;
-}
 
 std::uint64_t key_of(const FoundDevice& device, const std::string& options, std::string_view source)
 {
@@ -52,8 +36,39 @@ std::string_view math_options(MathMode math)
     return math == MathMode::fast ? " -DMATH_FAST -cl-fast-relaxed-math -cl-denorms-are-zero" : "";
 }
 
+std::string defines_of(const KernelId& kernel, unsigned tile_height, bool in_parts, bool starts_outside,
+                       unsigned stack_top)
+{
+    std::string defines = "-DGROUP_ITEMS=" + std::to_string(TILE_WIDTH * tile_height);
+    if (kernel.schedule == Schedule::persistent) defines += " -DPERSISTENT";
+    if (kernel.task == Task::rays) defines += " -DRAYS";
+    if (kernel.task == Task::search) defines += " -DSEARCH";
+    if (in_parts) defines += " -DTETS_IN_PARTS";
+    if (starts_outside) defines += " -DSTARTS_OUTSIDE";
+    if (structure_of(kernel.layout) == Structure::bvh && stack_top > 0)
+        defines += " -DSTACK_TOP=" + std::to_string(stack_top) + "u";
+    return defines;
+}
+
+std::string build_options(const FoundDevice& device, const ProgramId& id)
+{
+    std::string options = "-cl-std=CL1.2 " + id.defines;
+    // Oclgrind 21.10 interprets its optimiser's output, but not llvm.experimental.noalias.scope.decl, which comes from
+    // inlined functions that return structs.
+    if (device.facts.implementation.starts_with("oclgrind")) options += " -cl-opt-disable -DCALLS_FUNCTIONS";
+    // It takes asm statements, at which PoCL 6.0 ends with an assertion. PoCL drives GPUs, too.
+    if (device.facts.implementation.starts_with("pocl-3.") && device.facts.kind != DeviceKind::gpu)
+        options += " -DPREDICTS_BRANCHES";
+    options += math_options(id.math);
+    if (id.math == MathMode::fast) return options;
+    // No decision has denormals (docs/spec/numbers.md, N1). Unused lanes of a processor's vectors may have them, where
+    // compilers compute with all words of a quad, and some processors multiply denormals a hundred times slower.
+    if (device.facts.kind != DeviceKind::gpu) options += " -cl-denorms-are-zero";
+    return device.divides_correctly ? options + " -cl-fp32-correctly-rounded-divide-sqrt" : options;
+}
+
 Program::Program(Context& context, const ProgramId& id, const ProgramCache& cache)
-    : cache_(cache), options_(options_for(context.found(), id))
+    : cache_(cache), options_(build_options(context.found(), id))
 {
     const EmbeddedKernel* source = find_kernel(embedded_kernels(), id.source);
     if (source == nullptr) throw Error(ErrorKind::internal, "opencl lacks program '" + id.source + "'");

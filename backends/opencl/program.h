@@ -22,6 +22,24 @@ struct ProgramId {
     std::string defines = {}; ///< further options: "-DGROUP_ITEMS=64"
 };
 
+/// ProgramId::defines of a kernel. in_parts: the tets are in several buffers. starts_outside: no ray of an image starts
+/// in a tet. stack_top: as FoundDevice has it.
+[[nodiscard]] std::string defines_of(const KernelId& kernel, unsigned tile_height, bool in_parts, bool starts_outside,
+                                     unsigned stack_top);
+
+/// What the device's compiler is given for a program.
+[[nodiscard]] std::string build_options(const FoundDevice& device, const ProgramId& id);
+
+/// The arguments of kernel.cl's entry: these, then the scene's arrays, then the parts of the tets.
+enum Argument : cl_uint {
+    launch_argument,
+    end_tile_argument,
+    output_argument,
+    counter_argument,
+    rays_argument,
+    first_array_argument
+};
+
 /// A program compiled for a context's device, or taken from a cache.
 class Program {
 public:

@@ -10,16 +10,6 @@ namespace tetrace::opencl {
 
 namespace {
 
-// The arguments of kernel.cl's entry: these, then the scene's arrays, then the parts of the tets.
-enum Argument : cl_uint {
-    launch_argument,
-    end_tile_argument,
-    output_argument,
-    counter_argument,
-    rays_argument,
-    first_array_argument
-};
-
 /// More kernels are not in flight together.
 constexpr std::size_t max_queues = 8;
 
@@ -83,15 +73,8 @@ void OpenclSession::upload(const PackedScene& scene)
 void OpenclSession::compile()
 {
     const Stopwatch watch;
-    std::string defines = "-DGROUP_ITEMS=" + std::to_string(TILE_WIDTH * tile_height_);
-    if (kernel_id_.schedule == Schedule::persistent) defines += " -DPERSISTENT";
-    if (kernel_id_.task == Task::rays) defines += " -DRAYS";
-    if (kernel_id_.task == Task::search) defines += " -DSEARCH";
-    if (tet_parts_.count > 1) defines += " -DTETS_IN_PARTS";
-    if (starts_outside_) defines += " -DSTARTS_OUTSIDE";
-    const unsigned stack_top = context_->found().stack_top;
-    if (structure_of(kernel_id_.layout) == Structure::bvh && stack_top > 0)
-        defines += " -DSTACK_TOP=" + std::to_string(stack_top) + "u";
+    const std::string defines =
+        defines_of(kernel_id_, tile_height_, tet_parts_.count > 1, starts_outside_, context_->found().stack_top);
     const Program program(*context_, {source_name(kernel_id_), kernel_id_.math, defines}, cache_);
     run("making the kernel", output_bytes(), [&] {
         kernel_ = cl::Kernel(program.handle(), "run_image");

@@ -2,6 +2,7 @@
 
 #include "backends/vulkan/code.h"
 #include "backends/vulkan/kernels.h"
+#include "backends/vulkan/launch_case.h"
 #include "backends/vulkan/probe.h"
 #include "backends/vulkan/session.h"
 #include "core/device/defects.h"
@@ -66,6 +67,16 @@ public:
     [[nodiscard]] std::vector<KernelFile> kernel_files(const KernelId& kernel) const override
     {
         return vulkan::kernel_files(kernel);
+    }
+    [[nodiscard]] std::optional<LaunchCase> tile_case(const Device& device, const KernelId& kernel,
+                                                      const PackedScene& scene, const LaunchParams& launch,
+                                                      std::span<const Quad> rays) const override
+    {
+        return vulkan::tile_case(device, kernel, scene, launch, rays);
+    }
+    [[nodiscard]] std::optional<LaunchCase> defect_case(std::string_view name) const override
+    {
+        return vulkan::defect_case(name);
     }
 
     [[nodiscard]] bool shows_code() const override { return true; }

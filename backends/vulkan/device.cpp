@@ -1,5 +1,6 @@
 #include "backends/vulkan/device.h"
 
+#include "backends/vulkan/driver_library.h"
 #include "backends/vulkan/instance.h"
 #include "core/base/error.h"
 #include "core/device/device_facts.h"
@@ -225,8 +226,13 @@ std::vector<FoundDevice> find_devices()
 {
     try {
         std::vector<FoundDevice> found;
-        for (const vk::raii::PhysicalDevice& device : instance().handle().enumeratePhysicalDevices())
-            if (FoundDevice next = found_device(device); !is_listed(found, next)) found.push_back(std::move(next));
+        const auto listed = instance().handle().enumeratePhysicalDevices();
+        const std::vector<DriverDevice> drivers = driver_devices();
+        for (const vk::raii::PhysicalDevice& device : listed) {
+            FoundDevice next = found_device(device);
+            next.facts.library = library_of(drivers, device.getProperties());
+            if (!is_listed(found, next)) found.push_back(std::move(next));
+        }
         if (!found.empty()) return found;
         return {no_device("no Vulkan driver found a device; install the GPU's driver, or mesa-vulkan-drivers")};
     } catch (const Error& error) {

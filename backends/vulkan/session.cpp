@@ -20,17 +20,6 @@ void require_storage_buffers(const FoundDevice& found, const PackedScene& scene,
                                             " storage buffers, " + std::to_string(needed) + " are needed");
 }
 
-/// Every array as texels, arrays of quads separate from arrays of words: kernels/language/scene_view_texels_glsl.h.
-std::vector<TexelBinding> texel_bindings(Layout layout)
-{
-    std::vector<TexelBinding> texels;
-    for (const SceneArray& array : scene_arrays(layout))
-        texels.push_back(array.element_bytes == sizeof(Quad)
-                             ? TexelBinding{FIRST_QUADS_BINDING + array.binding, vk::Format::eR32G32B32A32Uint}
-                             : TexelBinding{array.binding, vk::Format::eR32Uint});
-    return texels;
-}
-
 /// Whether the scene is read as texels: if the device prefers it, and its views can be that large.
 bool is_in_texels(const FoundDevice& found, const PackedScene& scene, const TetParts& parts)
 {
@@ -55,8 +44,6 @@ constexpr std::uint32_t tiles_of_run = 4;
 
 constexpr std::uint32_t structure_binding = 0; // of a driver's BVH, as in rt/item.glsl
 
-constexpr TexelBinding rays_as_texels{FIRST_QUADS_BINDING + RAYS_BINDING, vk::Format::eR32G32B32A32Uint};
-
 /// Of a dispatch, or of a launch of a pipeline.
 std::uint32_t max_tiles(const FoundDevice& found, const KernelId& kernel, unsigned tile_height)
 {
@@ -75,6 +62,16 @@ void require_variant(const KernelId& kernel, const TetParts& parts)
 }
 
 } // namespace
+
+std::vector<TexelBinding> texel_bindings(Layout layout)
+{
+    std::vector<TexelBinding> texels;
+    for (const SceneArray& array : scene_arrays(layout))
+        texels.push_back(array.element_bytes == sizeof(Quad)
+                             ? TexelBinding{FIRST_QUADS_BINDING + array.binding, vk::Format::eR32G32B32A32Uint}
+                             : TexelBinding{array.binding, vk::Format::eR32Uint});
+    return texels;
+}
 
 VulkanSession::VulkanSession(const FoundDevice& found, const KernelId& kernel, const PackedScene& scene,
                              const SessionOptions& options)

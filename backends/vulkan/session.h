@@ -10,6 +10,12 @@
 
 namespace tetrace::vulkan {
 
+/// Every array of a scene as texels, arrays of quads separate from arrays of words:
+/// kernels/language/scene_view_texels_glsl.h.
+[[nodiscard]] std::vector<TexelBinding> texel_bindings(Layout layout);
+/// The same of given rays.
+inline constexpr TexelBinding rays_as_texels{FIRST_QUADS_BINDING + RAYS_BINDING, vk::Format::eR32G32B32A32Uint};
+
 /// One packed scene in the buffers of one device, or the driver's own BVH of a mesh, and its programs.
 class VulkanSession : public Session {
 public:

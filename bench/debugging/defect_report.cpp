@@ -265,6 +265,7 @@ nlohmann::json run_json(const DefectRun& run)
         {"type", name_of(run.device.kind)}, {"outcome", name_of(run.sight)},    {"items", defect_items}};
     if (!run.device.driver.empty()) object["driver"] = run.device.driver;
     if (!run.device.implementation.empty()) object["implementation"] = run.device.implementation;
+    if (!run.device.library.empty()) object["library"] = run.device.library;
     if (!run.reason.empty()) object["reason"] = run.reason;
     if (run.sight != DefectSight::seen) return object;
     const std::uint32_t item = run.wrong.front();
@@ -394,7 +395,8 @@ std::string defect_junit(const std::vector<DefectRun>& runs, const std::string& 
     std::vector<JunitCase> cases;
     for (const DefectRun& run : runs)
         cases.push_back({run.backend, label_of(run.backend, run.device_index), run.device.name, run.device.driver,
-                         case_name(run.defect->name), outcome_of(run), reason_of(run), run.seconds, judged_text(run)});
+                         case_name(run.defect->name), outcome_of(run), reason_of(run), run.seconds, judged_text(run),
+                         run.device.library});
     return junit_suite("defects", cases, problem);
 }
 

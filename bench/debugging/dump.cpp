@@ -126,12 +126,17 @@ std::vector<KernelFile> driver_code(const Options& options, const std::vector<Ba
     return files;
 }
 
-std::string readme_of(const std::vector<KernelFile>& files, const std::vector<std::string>& notes,
-                      const Options& options, std::size_t width)
+std::string dump_title(const Options& options)
+{
+    return fmt::format("{} for {}", name_of(one_kernel(options)), options.backends.front());
+}
+
+std::string readme_of(const std::string& title, const std::vector<KernelFile>& files,
+                      const std::vector<std::string>& notes, std::size_t width)
 {
     const BuildIdentity build = build_identity();
-    std::string text = fmt::format("{} for {}, written by tetrace {} ({})\n\n", name_of(one_kernel(options)),
-                                   options.backends.front(), build.version, build.commit);
+    std::string text =
+        wrapped(fmt::format("{}, written by tetrace {} ({})", title, build.version, build.commit), width, 0) + "\n";
     for (const KernelFile& file : files) {
         text += fmt::format("{} ({} bytes)\n{}", file.name, file.bytes.size(), wrapped(file.what + ".", width, 4));
         text += file.command.empty() ? std::string("\n") : fmt::format("    $ {}\n\n", file.command);

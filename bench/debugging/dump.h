@@ -22,8 +22,11 @@ namespace tetrace {
 [[nodiscard]] std::vector<KernelFile> driver_code(const Options& options, const std::vector<Backend*>& backends,
                                                   std::vector<std::string>& notes);
 
+/// What dumped_files() are of.
+[[nodiscard]] std::string dump_title(const Options& options);
+
 /// The text of README.txt for these files, wrapped to `width` columns.
-[[nodiscard]] std::string readme_of(const std::vector<KernelFile>& files, const std::vector<std::string>& notes,
-                                    const Options& options, std::size_t width = 110);
+[[nodiscard]] std::string readme_of(const std::string& title, const std::vector<KernelFile>& files,
+                                    const std::vector<std::string>& notes, std::size_t width = 110);
 
 } // namespace tetrace

@@ -206,12 +206,13 @@ float flush_tiny(float component)
     return std::fabs(component) < 0x1p-20f ? 0.0f : component; // as in kernels/ray.h
 }
 
+} // namespace
+
 const RaySet& rays_of(SceneWork& scene, const RowKey& key, std::size_t view)
 {
     return scene.given_rays().set(scene, key.rays, key.ray_order, view);
 }
 
-/// The ray's place among those that the row traces.
 std::size_t number_of_ray(SceneWork& scene, const RowKey& key, std::size_t view, const ImagePixel& pixel)
 {
     const std::uint32_t number = pixel.y * scene.width() + pixel.x;
@@ -225,6 +226,8 @@ std::size_t number_of_ray(SceneWork& scene, const RowKey& key, std::size_t view,
                                 pixel.x, pixel.y, name_of(key.rays)));
     return static_cast<std::size_t>(found - rays.begin());
 }
+
+namespace {
 
 /// A single pixel, or as few rays as a session takes, all of them this one. The session has other rays afterwards.
 Hit trace_alone(RowRun& row, const TraceJob& image, std::size_t view, std::size_t number, const ImagePixel& pixel)

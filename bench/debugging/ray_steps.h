@@ -65,6 +65,10 @@ struct PixelRay {
     Float3 origin, direction;
     std::optional<GivenRay> given = {}; ///< of a given ray: its start and end
 };
+/// The given rays of a view, for keys of task rays.
+[[nodiscard]] const RaySet& rays_of(SceneWork& scene, const RowKey& key, std::size_t view);
+/// The place of a pixel's ray among those that a row of this key traces of a view. Throws as ray_of() does.
+[[nodiscard]] std::size_t number_of_ray(SceneWork& scene, const RowKey& key, std::size_t view, const ImagePixel& pixel);
 /// The primary ray of a pixel.
 [[nodiscard]] PixelRay ray_of(const View& view, const ImagePixel& pixel);
 /// The ray that a row of this key traces for a pixel of a view (an index in SceneWork::views()). Throws Error{usage} if

@@ -20,18 +20,20 @@ KernelId our_kernel(const Options& options)
     for (const auto& [option, count] :
          {std::pair("--order", options.orders.size()), std::pair("--rays", options.rays.size()),
           std::pair("--ray-order", options.ray_orders.size())})
-        if (count > 1) throw Error(ErrorKind::usage, fmt::format("trace: {} accepts one value here", option));
+        if (count > 1)
+            throw Error(ErrorKind::usage, fmt::format("{}: {} accepts one value here", name_of(options.verb), option));
     const KernelId kernel = one_kernel(options);
     if (!is_portable(kernel))
         throw Error(ErrorKind::usage,
-                    fmt::format("trace: {} is not one of tetrace's kernels: it returns only the hit; use a method "
+                    fmt::format("{}: {} is not one of tetrace's kernels: it returns only the hit; use a method "
                                 "of the cdt, or layout bvh2, bvh4 or cwbvh",
-                                name_of(kernel)));
+                                name_of(options.verb), name_of(kernel)));
     return kernel;
 }
 
-/// The rows of the kernel, and openmp's first.
-std::vector<RowKey> keys_of(const Options& options)
+} // namespace
+
+std::vector<RowKey> rows_of_ray(const Options& options)
 {
     const KernelId kernel = our_kernel(options);
     Options one = options;
@@ -47,11 +49,9 @@ std::vector<RowKey> keys_of(const Options& options)
     return keys;
 }
 
-} // namespace
-
 TraceRun run_trace(const Options& options)
 {
-    const std::vector<RowKey> keys = keys_of(options);
+    const std::vector<RowKey> keys = rows_of_ray(options);
     TraceRun run;
     run.scene = std::make_unique<SceneWork>(load_work(scene_requests(options).front(), options));
     run.ray = ray_of(*run.scene, keys.front(), 0, *options.pixel);

@@ -19,6 +19,9 @@ struct TraceRun {
     [[nodiscard]] const RayOnDevice* reference() const;
 };
 
+/// The rows that the options select of one_kernel(), and openmp's first. Throws as run_trace() does.
+[[nodiscard]] std::vector<RowKey> rows_of_ray(const Options& options);
+
 /// Loads the scene, opens the rows that the options select of one_kernel(), and openmp's, and follows the ray on
 /// each. A device that fails is an error of its row.
 /// Throws Error{usage} if the kernel is not ours, or the pixel makes no such ray; what one_kernel(), select_rows()

@@ -1,8 +1,11 @@
 #include "bench/options/apply_option.h"
 #include "bench/options/option_parts.h"
 #include "bench/options/option_values.h"
+#include "core/device/defects.h"
 
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace tetrace {
 
@@ -20,6 +23,21 @@ ImagePixel parse_pixel(const std::string& option, const std::string& text)
         return static_cast<std::uint32_t>(parse_count(option, part, 0, max_pixels));
     };
     return {number(text.substr(0, comma)), number(text.substr(comma + 1))};
+}
+
+std::string defect_names()
+{
+    std::vector<std::string> names;
+    for (const Defect& defect : all_defects())
+        names.emplace_back(defect.name);
+    return join_alternatives(names);
+}
+
+void set_defect(Options& options, const std::string& text)
+{
+    if (std::ranges::find(all_defects(), text, &Defect::name) == all_defects().end())
+        reject_value("--defect", text, defect_names());
+    options.defect = text;
 }
 
 } // namespace
@@ -49,13 +67,20 @@ std::vector<OptionRow> inspect_options()
 
 std::vector<OptionRow> trace_options()
 {
+    const unsigned with_ray = bit(Verb::trace) | bit(Verb::dump);
     return {
-        {"Ray", "--view", "N", "The view of the camera set, numbered from 0. Default: 0.", bit(Verb::trace), false,
+        {"Ray", "--defect", "NAME",
+         "Write a case of this reduced kernel of a compiler defect: " + defect_names() +
+             ". Default: files of the kernel of --method and --layout, or with --scene a case of it.",
+         bit(Verb::dump), false, set_defect},
+        {"Ray", "--view", "N", "The view of the camera set, numbered from 0. Default: 0.", with_ray, false,
          [](Options& o, const std::string& v) { o.views = fmt::format("{}", parse_count("--view", v, 0, 1u << 30)); },
-         usual_for(every_verb, "the view of the camera set")},
-        {"Ray", "--pixel", "X,Y", "The pixel whose ray is traced; 0,0 is the image's upper left. Required.",
-         bit(Verb::trace), false, [](Options& o, const std::string& v) { o.pixel = parse_pixel("--pixel", v); },
-         usual_for(every_verb, "the pixel; 0,0 is the upper left")},
+         usual_for(bit(Verb::trace), "the view of the camera set")},
+        {"Ray", "--pixel", "X,Y",
+         "The pixel whose ray is traced; of 'dump', the case is the work-group of that ray. 0,0 is the image's upper "
+         "left. Required; of 'dump' with --scene.",
+         with_ray, false, [](Options& o, const std::string& v) { o.pixel = parse_pixel("--pixel", v); },
+         usual_for(bit(Verb::trace), "the pixel; 0,0 is the upper left")},
     };
 }
 

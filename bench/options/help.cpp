@@ -179,19 +179,25 @@ const VerbHelp verb_help[] = {
      "bvh2, bvh4, cwbvh) lack steps, because their kernels do not report the nodes they visit; the hits are shown, "
      "and how many nodes and triangles openmp visits. Embree's kernels and a driver's (rt) return only the hit, and "
      "are refused. Exits with 1 if a device differs from openmp, with 2 if the ray does not exist, and with 3 if none "
-     "of the selected devices could trace it.",
+     "of the selected devices could trace it. 'tetrace dump' with the same options, one --backend and --out FOLDER "
+     "writes the ray's work-group as a reproducer.",
      "  tetrace trace --scene cubes --pixel 128,100\n"
      "  tetrace trace --scene bunny --view 2 --pixel 300,17 --size 512 --method project --backend vulkan\n"
      "  tetrace trace --scene cubes --pixel 128,100 --format json --out ray.json\n"},
-    {Verb::dump, "write a kernel's source and code for a bug report",
+    {Verb::dump, "write a kernel's source and code, or a reproducer, for a bug report",
      "Writes the files of one kernel as a backend's driver gets them. opencl: its source with all includes resolved. "
      "vulkan: GLSL, the SPIR-V of each program, and the machine code from drivers that return it. cuda: its source, "
      "PTX if NVRTC is here, and machine code if the build has it. README.txt, which is also printed, says what each "
      "file is and how to compile it without tetrace. A driver is loaded only for its machine code, in this process, "
      "after everything else is written. Exits with 2 for a backend without such files: kernels of openmp, cuda-host "
-     "and embree are parts of programs and libraries.",
+     "and embree are parts of programs and libraries.\n\n"
+     "With --scene and --pixel, or with --defect, it writes a case instead: one work-group of a launch as plain files, "
+     "the expected output (openmp's), and a host in C that runs it on opencl or vulkan without tetrace: exit code 0 as "
+     "expected, 1 different, 2 cannot run.",
      "  tetrace dump --backend vulkan --method project --layout half32 --out report\n"
-     "  tetrace dump --backend opencl --method maria --layout tet80 --math fast --out report\n"},
+     "  tetrace dump --backend opencl --method maria --layout tet80 --math fast --out report\n"
+     "  tetrace dump --backend vulkan --method project --scene cubes --pixel 128,100 --out case\n"
+     "  tetrace dump --backend opencl --defect loop_of_70000_iterations --out case\n"},
     {Verb::compare, "compare results of bench, or two of check, row by row",
      "Compares the rows of B.json with those of the same name in A.json: another commit, driver, compiler or machine. "
      "Both were made by 'tetrace bench --out' or 'tetrace reproduce --out' (the exit searches of table5 are rows "

@@ -194,8 +194,10 @@ std::vector<OptionRow> row_options()
          reproducing | bit(Verb::dump), true, append_backend("--backend", &Options::backends),
          usual_for(~bit(Verb::render), "API: {}")},
         {"Rows", "--device", "TEXT",
-         "Keep the rows of the devices whose name, driver, type, id or number contains TEXT, ignoring case, for "
-         "example 'gpu', 'llvmpipe' or 'vulkan:1' (the second device of vulkan). Exit code 3 if a TEXT matches "
+         "Keep the rows of the devices whose name, driver, type, id, number or driver's library contains TEXT, "
+         "ignoring "
+         "case, for example 'gpu', 'llvmpipe', 'vulkan:1' (the second device of vulkan) or '/opt/mesa/'. Exit code 3 "
+         "if a TEXT matches "
          "none. Default: all.",
          reproducing | bit(Verb::dump), true, append_text(&Options::devices),
          usual_for(bit(Verb::dump), "devices whose name, type or number has this text")},
@@ -204,12 +206,12 @@ std::vector<OptionRow> row_options()
          "host, from the primary hits: 'shadow', towards a light, and 'ao', short rays in directions around the "
          "normal (for both, any hit will do); 'diffuse', one bounce; 'random', lines through the domain. Default: "
          "primary.",
-         measuring | bit(Verb::trace), true, append("--rays", &Options::rays),
-         usual_for(~measuring, "kind of rays: {}")},
+         measuring | bit(Verb::trace) | bit(Verb::dump), true, append("--rays", &Options::rays),
+         usual_for(~(measuring | bit(Verb::dump)), "kind of rays: {}")},
         {"Rows", "--ray-order", "ORDER",
          "Order of the rays of all kinds except primary: 'tiles', in the order of their pixels; 'morton', sorted by "
          "origin and direction; 'shuffled'. Each is a separate row. Default: tiles.",
-         measuring | bit(Verb::trace), true, append("--ray-order", &Options::ray_orders)},
+         measuring | bit(Verb::trace) | bit(Verb::dump), true, append("--ray-order", &Options::ray_orders)},
         {"Rows", "--math", "MODE",
          "'exact': no contraction to FMAs, the same bits everywhere; 'fast': the compiler may contract. Embree has "
          "one build, whose rows appear in both modes. Default: exact.",
@@ -220,7 +222,7 @@ std::vector<OptionRow> row_options()
          "no ray from outside reaches are last; 'chains', as 'reached', but each tet is followed by its neighbour "
          "across its largest free face; 'input', as TetGen wrote them. Only for rows of structure cdt. Default: "
          "chains.",
-         tracing, true, append("--order", &Options::orders)},
+         tracing | bit(Verb::dump), true, append("--order", &Options::orders)},
         {"Rows", "--schedule", "NAME",
          "How work items get their rays: 'tiles', one ray each; 'persistent', work items fetch rays until all are "
          "traced, on the backends with such kernels; 'packets', 4, 8 or 16 rays in lockstep on openmp, for project "
@@ -241,7 +243,7 @@ std::vector<OptionRow> row_options()
 
 std::vector<OptionRow> ray_options()
 {
-    const unsigned with_rays = reproducing | bit(Verb::build);
+    const unsigned with_rays = building;
     return {
         {"Rays", "--camera-set", "SET",
          "'frame', 4 views that the scene fills: close views of a mesh, and special cameras for " +
@@ -250,15 +252,16 @@ std::vector<OptionRow> ray_options()
              "image; 'orbit', 1,282 views on a sphere of 2 radii; 'flight', 1,282 views from 1.2 to 2.9 radii; or a "
              ".json file with your own cameras (docs/cameras.md). Default: frame; for 'reproduce', except for rivals, "
              "flight.",
-         with_rays, false, set_cameras(), usual_for(~sharing, "views: {}, or a .json file")},
+         with_rays, false, set_cameras(), usual_for(~(sharing | bit(Verb::dump)), "views: {}, or a .json file")},
         {"Rays", "--views", "LIST",
          "Views of the camera set, numbered from 0: numbers, ranges and strides, for example 0,3,10-20 or "
          "0-1281:64. Default: all; for 'bench' without --scene and with frame, 0 and 1.",
-         with_rays & ~bit(Verb::trace), true,
+         with_rays & ~bit(Verb::trace) & ~bit(Verb::dump), true,
          [](Options& o, const std::string& v) { o.views += (o.views.empty() ? "" : ",") + v; },
          usual_for(bit(Verb::render) | bit(Verb::reproduce), "views of the set: 0,3,10-20 or 0-1281:64")},
         {"Rays", "--size", "WxH",
-         "Image size in pixels, one ray each; N means NxN. Default: 1024x1024; for 'check' and 'trace' 256x256, for "
+         "Image size in pixels, one ray each; N means NxN. Default: 1024x1024; for 'check', 'trace' and 'dump' "
+         "256x256, for "
          "'reproduce rivals' 512x512.",
          with_rays, false,
          [](Options& o, const std::string& v) { std::tie(o.width, o.height) = parse_size("--size", v); },
@@ -268,7 +271,7 @@ std::vector<OptionRow> ray_options()
          "container with a CPU quota, the quota rounded down. Scenes are always built with 0. Default: 0.",
          with_rays, false, set_count("--threads", &Options::threads, 0, 4096)},
         {experiments, "--tile", "WxH", "Pixels per work-group: 8x4 or 8x8. Default: depends on the type of the device.",
-         reproducing, false,
+         reproducing | bit(Verb::dump), false,
          ApplyOption([](Options& o, const std::string& v) { o.tile_height = parse_tile_height(v); }, tile_names())},
         {experiments, "--packet-lanes", "N",
          "Rays per packet, for rows of schedule 'packets': 4, 8 or 16. If the CPU or the build does not support "

@@ -112,14 +112,16 @@ void check_single(const Options& options, const char* name, std::size_t count)
                                                   name_of(options.verb)));
 }
 
-/// `trace` follows one ray.
+/// `trace` follows one ray, and a case of `dump` has the work-group of one.
 void check_ray(const Options& options)
 {
-    if (options.scenes.empty()) throw Error(ErrorKind::usage, "trace: --scene SCENE is missing: which scene?");
+    if (options.scenes.empty())
+        throw Error(ErrorKind::usage, fmt::format("{}: --scene SCENE is missing: which scene?", name_of(options.verb)));
     if (options.scenes.size() > 1)
-        throw Error(ErrorKind::usage,
-                    fmt::format("trace: --scene accepts one scene; {} are given", options.scenes.size()));
-    if (!options.pixel) throw Error(ErrorKind::usage, "trace: --pixel X,Y is missing: which ray?");
+        throw Error(ErrorKind::usage, fmt::format("{}: --scene accepts one scene; {} are given", name_of(options.verb),
+                                                  options.scenes.size()));
+    if (!options.pixel)
+        throw Error(ErrorKind::usage, fmt::format("{}: --pixel X,Y is missing: which ray?", name_of(options.verb)));
     if (options.pixel->x >= options.width || options.pixel->y >= options.height)
         throw Error(ErrorKind::usage,
                     fmt::format("--pixel: {},{} is outside the image, whose pixels go from 0,0 to {},{}; --size "
@@ -131,6 +133,24 @@ void check_dump(const Options& options)
 {
     if (options.backends.size() != 1) throw Error(ErrorKind::usage, "dump: --backend needs one backend: whose files?");
     if (!options.out) throw Error(ErrorKind::usage, "dump: --out FOLDER is missing: where to?");
+    if (!options.scenes.empty()) check_ray(options);
+}
+
+/// What `dump` accepts without a case, and what a case of a defect accepts; the other options choose a scene's case.
+constexpr std::string_view of_files[] = {"--backend", "--out", "--method", "--layout", "--math", "--device"};
+constexpr std::string_view of_defects[] = {"--backend", "--out", "--defect"};
+
+void check_case(const Options& options, const CLI::App& app)
+{
+    const bool has_defect = !options.defect.empty();
+    if (!has_defect && !options.scenes.empty()) return;
+    const auto accepted = has_defect ? std::span(of_defects) : std::span<const std::string_view>(of_files);
+    for (const OptionRow& row : option_table())
+        if (takes(Verb::dump, row) && app.get_option(row.name)->count() > 0 &&
+            std::ranges::find(accepted, row.name) == accepted.end())
+            throw Error(ErrorKind::usage,
+                        has_defect ? fmt::format("dump: {} does not go with --defect", row.name)
+                                   : fmt::format("dump: {} is for a case; name its scene with --scene", row.name));
 }
 
 void check_together(const Options& options)
@@ -173,9 +193,9 @@ Options defaults_of(Verb verb)
     Options options;
     options.verb = verb;
     if (verb != Verb::bench) options.budget_s = std::numeric_limits<double>::infinity();
-    if (verb == Verb::check || verb == Verb::trace)
+    if (verb == Verb::check || verb == Verb::trace || verb == Verb::dump)
         options.width = options.height = 256; // seconds for the scene cubes on all devices
-    if (verb == Verb::trace) options.views = "0";
+    if (verb == Verb::trace || verb == Verb::dump) options.views = "0";
     if (verb != Verb::reproduce) return options;
     options.camera_set = CameraSet::flight; // as many views as in the paper, over its range of steps
     options.structures = {Structure::cdt};
@@ -267,6 +287,7 @@ Options parse_verb(Verb verb, const std::vector<std::string>& arguments)
     for (const OptionRow& row : option_table())
         if (takes(verb, row)) apply_row(options, row, app);
     if (verb == Verb::reproduce) check_rivals(options, app);
+    if (verb == Verb::dump) check_case(options, app);
     check_workload(verb, app);
     set_files(options, files);
     choose_default_views(options);

@@ -131,7 +131,8 @@ struct Options {
     std::optional<OwnCameras> own_cameras; ///< in place of camera_set
     std::string views;                     ///< as parse_views() takes it; empty: all of the set
     std::uint32_t width = 1024, height = 1024;
-    std::optional<ImagePixel> pixel; ///< of `trace`, which needs it
+    std::optional<ImagePixel> pixel; ///< of `trace`, which needs it, and of a case of `dump`
+    std::string defect;              ///< of `dump`: the reduced kernel that is written as a case; empty: none
 
     unsigned threads = 0;           ///< 0: all that the process may use
     unsigned tile_height = 0;       ///< 4 or 8; 0: see tile_height_of()

@@ -128,6 +128,19 @@ Table answers_table(const std::string& scene, const std::vector<RowRecord>& all)
     return table;
 }
 
+namespace {
+
+/// The device's name, and if another driver's device has the same, the driver's library.
+std::string distinct_name(const Device& device, const std::vector<RowRecord>& rows)
+{
+    const bool is_shared = std::ranges::any_of(rows, [&](const RowRecord& other) {
+        return other.device.name == device.name && other.device.library != device.library;
+    });
+    return is_shared && !device.library.empty() ? fmt::format("{} ({})", device.name, device.library) : device.name;
+}
+
+} // namespace
+
 Table self_test_table(const std::vector<RowRecord>& rows)
 {
     Table table({{"label", "device"},
@@ -141,7 +154,7 @@ Table self_test_table(const std::vector<RowRecord>& rows)
             std::ranges::find(told, label) != told.end())
             continue;
         told.push_back(label);
-        table.add({label, row.device.name, std::string(name_of(row.device.kind)),
+        table.add({label, distinct_name(row.device, rows), std::string(name_of(row.device.kind)),
                    row.self_test ? Cell(row.self_test->brief()) : Cell()});
     }
     return table;

@@ -22,7 +22,8 @@ namespace tetrace {
 /// The distinct answers: the hash of each answer's hits, the devices that gave it, and the oracle's counts.
 [[nodiscard]] Table answers_table(const std::string& scene, const std::vector<RowRecord>& rows);
 
-/// Explains the columns of all matrices: each device and its self-test in exact mode, one per line.
+/// Explains the columns of all matrices: each device and its self-test in exact mode, one per line. Devices of one name
+/// and several drivers have their driver's library with it.
 [[nodiscard]] Table self_test_table(const std::vector<RowRecord>& rows);
 
 /// {scene: {row: {device: {"cell": ..., "hit_hash": ...}}}}.

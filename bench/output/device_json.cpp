@@ -45,6 +45,7 @@ json device_json(const Device& device)
     set_known(object, "implementation", device.implementation);
     set_known(object, "uuid", device.uuid);
     set_known(object, "pci", device.pci);
+    set_known(object, "library", device.library);
     each_number(device, [&](const char* key, const auto& value) { set_known(object, key, value); });
     return object;
 }
@@ -57,7 +58,8 @@ Device device_from(const ResultValue& value)
                                       {"id", &Device::id},
                                       {"implementation", &Device::implementation},
                                       {"uuid", &Device::uuid},
-                                      {"pci", &Device::pci}})
+                                      {"pci", &Device::pci},
+                                      {"library", &Device::library}})
         device.*member = printable_line(value.text_at(key));
     device.kind = device_kind_of(value);
     each_number(device, [&](const char* key, auto& member) { read_member(member, value, key); });

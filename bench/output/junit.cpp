@@ -118,6 +118,7 @@ struct Suite {
         time_s += test.time_s;
         if (!test.device.empty()) properties[test.label + ".device"] = test.device;
         if (!test.driver.empty()) properties[test.label + ".driver"] = test.driver;
+        if (!test.library.empty()) properties[test.label + ".library"] = test.library;
     }
 
     void add(const RowRecord& row, const Judged& judged, bool has_expectations)
@@ -128,6 +129,7 @@ struct Suite {
         const std::string device = device_label(row.key);
         if (!row.device.name.empty()) properties[device + ".device"] = row.device.name;
         if (!row.device.driver.empty()) properties[device + ".driver"] = row.device.driver;
+        if (!row.device.library.empty()) properties[device + ".library"] = row.device.library;
         if (row.self_test)
             properties[fmt::format("{}.self_test.{}", device, name_of(row.key.kernel.math))] = row.self_test->text();
     }

@@ -19,7 +19,8 @@ struct JunitCase {
     CaseOutcome outcome = CaseOutcome::passed;
     std::string reason; ///< where it did not pass
     double time_s = 0;
-    std::string output = {}; ///< of the test; empty: none
+    std::string output = {};  ///< of the test; empty: none
+    std::string library = {}; ///< of the driver; becomes a property, too
 };
 
 /// The rows of `tetrace check`, or of another verb, as JUnit XML, valid by the schema of Jenkins' xUnit plugin

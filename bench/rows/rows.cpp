@@ -220,10 +220,11 @@ void require_named_devices(const Options& options, const std::vector<Backend*>& 
                    !devices_with_rows(one, *backend).empty();
         };
         if (std::ranges::none_of(backends, has_it))
-            throw Error(ErrorKind::missing,
-                        fmt::format("--device: no device's name contains {} (nor its driver, type, id or number); "
-                                    "there are: {}",
-                                    text, names));
+            throw Error(
+                ErrorKind::missing,
+                fmt::format("--device: no device's name contains {} (nor its driver, library, type, id or number); "
+                            "there are: {}",
+                            text, names));
     }
 }
 
@@ -265,8 +266,9 @@ std::string numbered_backend(const RowKey& key)
 bool wanted_device(const Options& options, const Backend& backend, std::size_t index)
 {
     const Device& device = backend.devices()[index];
-    const std::string what = in_lower_case(fmt::format("{}\n{}\n{}\n{}\n{}:{}", device.name, device.driver,
-                                                       name_of(device.kind), device.id, backend.name(), index));
+    const std::string what =
+        in_lower_case(fmt::format("{}\n{}\n{}\n{}\n{}\n{}:{}", device.name, device.driver, name_of(device.kind),
+                                  device.id, device.library, backend.name(), index));
     const auto holds = [&](const std::string& text) { return what.find(in_lower_case(text)) != std::string::npos; };
     return options.devices.empty() || std::ranges::any_of(options.devices, holds);
 }

@@ -85,6 +85,7 @@ Table device_table(const std::vector<ApiDevice>& devices)
                  {"id", "id"},
                  {"uuid", "UUID"},
                  {"pci", "PCI"},
+                 {"library", "library"},
                  {"threads", "threads"},
                  {"memory_bytes", "memory", "bytes"},
                  {"max_buffer_bytes", "largest buffer", "bytes"},
@@ -96,12 +97,24 @@ Table device_table(const std::vector<ApiDevice>& devices)
                  {"reason", "reason"}});
     for (const ApiDevice& found : devices) {
         const Device& device = found.device;
-        table.add({backend_of(found), found.label, device.name, std::string(name_of(device.kind)),
-                   text_cell(device.driver), text_cell(device.implementation), std::uint64_t{found.physical},
-                   text_cell(device.id), text_cell(device.uuid), text_cell(device.pci), std::uint64_t{device.threads},
-                   count_cell(device.memory_bytes), count_cell(device.max_buffer_bytes),
-                   count_cell(device.max_group_items), count_cell(device.group_width),
-                   device.timer_period_s > 0 ? Cell(device.timer_period_s) : Cell(), text_cell(found.self_test_text),
+        table.add({backend_of(found),
+                   found.label,
+                   device.name,
+                   std::string(name_of(device.kind)),
+                   text_cell(device.driver),
+                   text_cell(device.implementation),
+                   std::uint64_t{found.physical},
+                   text_cell(device.id),
+                   text_cell(device.uuid),
+                   text_cell(device.pci),
+                   text_cell(device.library),
+                   std::uint64_t{device.threads},
+                   count_cell(device.memory_bytes),
+                   count_cell(device.max_buffer_bytes),
+                   count_cell(device.max_group_items),
+                   count_cell(device.group_width),
+                   device.timer_period_s > 0 ? Cell(device.timer_period_s) : Cell(),
+                   text_cell(found.self_test_text),
                    std::string(device.usable         ? "usable"
                                : device.compile_only ? "compile only"
                                                      : "missing"),
@@ -153,6 +166,7 @@ std::string api_text(const ApiDevice& found)
     std::string text =
         fmt::format("{}, {}{}{}", device.name, name_of(device.kind), device.driver.empty() ? "" : ", ", device.driver);
     if (const std::string limits = limits_text(device); !limits.empty()) text += "\n\n" + limits;
+    if (!device.library.empty()) text += "\n\nlibrary: " + device.library;
     if (!found.self_test_text.empty()) text += "\n\nself-test: " + found.self_test_text;
     std::string lines = wrapped(text, width, margin);
     for (std::size_t gap; (gap = lines.find("\n\n")) != std::string::npos;) // keeps the facts of one device together

@@ -1,3 +1,4 @@
+#include "bench/debugging/case_files.h"
 #include "bench/debugging/dump.h"
 #include "bench/terminal/progress.h"
 #include "bench/terminal/text.h"
@@ -29,23 +30,40 @@ void make_folder(const std::filesystem::path& folder)
                                                   (failed ? failed.message() : "a file has that name"));
 }
 
+void print_readme(const std::string& title, const std::vector<KernelFile>& files, const std::vector<std::string>& notes)
+{
+    const std::size_t columns = terminal_columns(STDOUT_FILENO);
+    print(columns == 0 ? readme_of(title, files, notes)
+                       : readme_of(title, files, notes, std::min<std::size_t>(columns, 110)));
+}
+
+int dump_case(const Options& options)
+{
+    const DumpedCase dumped = dumped_case(options, direct_backends());
+    make_folder(*options.out);
+    write_all(dumped.files, *options.out);
+    write_whole(*options.out / "README.txt", readme_of(dumped.title, dumped.files, {}));
+    print_readme(dumped.title, dumped.files, {});
+    return 0;
+}
+
 } // namespace
 
 int dump_command(const Options& options)
 {
+    if (!options.defect.empty() || !options.scenes.empty()) return dump_case(options);
     const auto& backends = direct_backends();
     std::vector<KernelFile> files = dumped_files(options, backends);
     std::vector<std::string> notes;
+    const std::string title = dump_title(options);
     make_folder(*options.out);
     write_all(files, *options.out);
-    write_whole(*options.out / "README.txt", readme_of(files, notes, options)); // before a driver can crash
+    write_whole(*options.out / "README.txt", readme_of(title, files, notes)); // before a driver can crash
     const std::vector<KernelFile> code = driver_code(options, backends, notes);
     write_all(code, *options.out);
     files.insert(files.end(), code.begin(), code.end());
-    write_whole(*options.out / "README.txt", readme_of(files, notes, options));
-    const std::size_t columns = terminal_columns(STDOUT_FILENO);
-    print(columns == 0 ? readme_of(files, notes, options)
-                       : readme_of(files, notes, options, std::min<std::size_t>(columns, 110)));
+    write_whole(*options.out / "README.txt", readme_of(title, files, notes));
+    print_readme(title, files, notes);
     return 0;
 }
 

@@ -19,6 +19,8 @@
 
 namespace tetrace {
 
+struct LaunchParams; // core/device/launch.h
+
 /// Where a launch's jobs write their results in its output: each job between GUARD_WORDS of its own before and after
 /// them, one job after the other. All sizes are in words.
 class OutputParts {
@@ -77,6 +79,20 @@ struct KernelFile {
     std::string bytes;
 };
 
+/// A launch of one work-group as plain data: all that a host needs that knows nothing of tetrace. What the lines of its
+/// case.txt mean is at the head of backends/<api>/run_case.c. The expected output is not a part of it.
+struct LaunchCase {
+    /// A file that a line of case.txt names after these words: "buffer 5".
+    struct Input {
+        std::string line;
+        KernelFile file;
+    };
+    KernelFile program, host;       ///< host: run_case.c, with the command that compiles and runs it
+    std::vector<std::string> lines; ///< of case.txt, after the program's
+    std::vector<Input> inputs;
+    std::uint32_t output = 0; ///< argument (OpenCL) or binding (Vulkan) of what the program writes
+};
+
 /// What a device computes on. Emulated: a GPU's API that runs on this machine's processor.
 enum class DeviceKind { cpu, gpu, emulated };
 /// As in results.
@@ -92,6 +108,7 @@ struct Device {
     std::string id;             ///< the name by which the user selects it: UUID, else PCI id, else the name
     std::string uuid;           ///< 32 lower-case hexadecimal digits, the same under every API; empty where unknown
     std::string pci;            ///< domain:bus:device.function, for example "0000:41:00.0"; empty where unknown
+    std::string library;        ///< path of the driver's shared library; empty where there is none, or it is unknown
     std::uint64_t memory_bytes = 0;
     std::uint64_t max_buffer_bytes = 0; ///< the largest buffer that a kernel can be given; 0: memory is the limit
     unsigned max_group_items = 0;       ///< the most work items of a group; 0: does not apply
@@ -253,11 +270,22 @@ public:
     /// Measures the device, in about a second; empty if the API has neither memory nor launches of its own.
     [[nodiscard]] virtual std::optional<Yardstick> yardstick(std::size_t device, const SessionOptions& options) = 0;
 
-    // For those who look into a driver or a compiler. A backend overrides what it can do.
+    // For those who look into a driver or a compiler. A backend overrides what it can do. No driver is loaded for the
+    // files and cases.
 
     /// The files of a kernel of that method and layout, in its math mode, for all tasks: texts, or code that a driver
-    /// gets. No driver is loaded for them. Empty if there is none.
+    /// gets. Empty if there is none.
     [[nodiscard]] virtual std::vector<KernelFile> kernel_files(const KernelId&) const { return {}; }
+    /// The launch of the tile number launch.first_tile, as such a device gets it (facts that are not known may be
+    /// missing). kernel: portable, of task trace or rays. rays: those given, for task rays. The output has the results
+    /// of all rays of the launch, as OutputParts has them for one job. Empty if there is no host for the API.
+    [[nodiscard]] virtual std::optional<LaunchCase> tile_case(const Device&, const KernelId&, const PackedScene&,
+                                                              const LaunchParams&, std::span<const Quad>) const
+    {
+        return std::nullopt;
+    }
+    /// The launch of the reduced kernel of that name (core/device/defects.h). Empty if there is no host for the API.
+    [[nodiscard]] virtual std::optional<LaunchCase> defect_case(std::string_view) const { return std::nullopt; }
     /// Whether compiled() shows what the API's compilers make of our kernels.
     [[nodiscard]] virtual bool shows_code() const { return false; }
     /// The device need not be usable: compile_only is enough. kernel: without one, an empty kernel is compiled.

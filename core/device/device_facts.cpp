@@ -6,6 +6,8 @@
 #include <array>
 #include <cctype>
 #include <cstdio>
+#include <dlfcn.h>
+#include <filesystem>
 #include <tuple>
 
 namespace tetrace {
@@ -60,10 +62,19 @@ Device unusable_device(const std::string& name, const std::string& reason)
 
 Device printable(Device device)
 {
-    for (std::string* const line : {&device.name, &device.driver, &device.implementation, &device.id})
+    for (std::string* const line : {&device.name, &device.driver, &device.implementation, &device.id, &device.library})
         *line = printable_line(*line);
     device.reason = printable_text(device.reason);
     return device;
+}
+
+std::string library_holding(const void* function)
+{
+    Dl_info library{};
+    if (function == nullptr || ::dladdr(function, &library) == 0 || library.dli_fname == nullptr) return {};
+    std::error_code failed;
+    const auto path = std::filesystem::canonical(library.dli_fname, failed);
+    return failed ? library.dli_fname : path.string();
 }
 
 std::string hexadecimal(std::span<const std::uint8_t> bytes)

@@ -14,6 +14,9 @@ namespace tetrace {
 /// The placeholder for an API without devices, with the reason.
 [[nodiscard]] Device unusable_device(const std::string& name, const std::string& reason);
 
+/// The path of the shared library that holds a function, without links; empty if none does. Device::library.
+[[nodiscard]] std::string library_holding(const void* function);
+
 /// Two lower-case digits per byte: Device::uuid.
 [[nodiscard]] std::string hexadecimal(std::span<const std::uint8_t> bytes);
 

@@ -17,11 +17,11 @@ enum class Ended : std::uint32_t { well, error, bad_alloc, other };
 template <class Visit>
 void each_text(Device& device, const Visit& visit)
 {
-    auto& [name, kind, driver, implementation, id, uuid, pci, memory_bytes, max_buffer_bytes, max_group_items,
+    auto& [name, kind, driver, implementation, id, uuid, pci, library, memory_bytes, max_buffer_bytes, max_group_items,
            group_width, max_steps, timer_period_s, threads, usable, compile_only, broken, reason] = device;
     static_cast<void>(std::tie(kind, memory_bytes, max_buffer_bytes, max_group_items, group_width, max_steps,
                                timer_period_s, threads, usable, compile_only, broken)); // see each_number()
-    for (std::string* text : {&name, &driver, &implementation, &id, &uuid, &pci, &reason})
+    for (std::string* text : {&name, &driver, &implementation, &id, &uuid, &pci, &library, &reason})
         visit(*text);
 }
 

@@ -24,6 +24,8 @@ TEST_P(Devices, say_what_they_are)
         EXPECT_NE(device.implementation.find('-'), std::string::npos) << device.implementation;
         EXPECT_GE(device.max_group_items, 64u);
         EXPECT_GT(device.memory_bytes, 0u);
+        const bool is_loaded = backend.name() != "cuda-host" && !device.implementation.starts_with("oclgrind");
+        EXPECT_EQ(std::filesystem::is_regular_file(device.library), is_loaded) << device.library;
         EXPECT_TRUE(device.uuid.empty() || device.uuid.size() == 32) << device.uuid;
         EXPECT_EQ(device.max_buffer_bytes != 0, GetParam().cuts_tets) << "0: memory is the limit";
     }

@@ -112,6 +112,7 @@ public:
                           "the id",
                           "0123456789abcdef0123456789abcdef",
                           "0000:41:00.0",
+                          "/opt/erratic/liberratic.so",
                           1ull << 40,
                           3ull << 33,
                           1024 + i,

@@ -3,6 +3,7 @@
 #include "bench/expectations/check_verdict.h"
 #include "bench/measuring/conformity.h"
 #include "bench/measuring/view_recorder.h"
+#include "bench/output/check_matrix.h"
 #include "bench/terminal/text.h"
 #include "scenes/procedural.h"
 #include "tests/support/temporary_folder.h"
@@ -87,6 +88,7 @@ TEST(Junit, classes_have_no_version_and_properties_have_them)
         rows[0].key.backend = "vulkan";
         rows[0].device.name = name;
         rows[0].device.driver = driver;
+        rows[0].device.library = "/opt/mesa/libvulkan_lvp.so";
         return junit_xml(rows, judge_rows(rows, nullptr, false));
     };
     for (const char* const name : {"llvmpipe (LLVM 15.0.6, 256 bits)", "llvmpipe (LLVM 19.1.7, 128 bits)"})
@@ -97,7 +99,21 @@ TEST(Junit, classes_have_no_version_and_properties_have_them)
     const std::string xml = xml_of("llvmpipe (LLVM 15.0.6, 256 bits)", "Mesa 22.3.6");
     EXPECT_TRUE(contains(xml, "<property name=\"vulkan.device\" value=\"llvmpipe (LLVM 15.0.6, 256 bits)\"/>"));
     EXPECT_TRUE(contains(xml, "<property name=\"vulkan.driver\" value=\"Mesa 22.3.6\"/>"));
+    EXPECT_TRUE(contains(xml, "<property name=\"vulkan.library\" value=\"/opt/mesa/libvulkan_lvp.so\"/>"));
     expect_valid(xml);
+}
+
+TEST(CheckTables, devices_of_one_name_are_told_apart_by_their_drivers_library)
+{
+    std::vector<RowRecord> rows(3, skipped_row(""));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        rows[i].key.device = i;
+        rows[i].device.library = fmt::format("/build{}/lib.so", i);
+    }
+    rows[2].device.name = "another";
+    const std::string text = self_test_table(rows).csv();
+    EXPECT_TRUE(contains(text, "(/build0/lib.so)") && contains(text, "(/build1/lib.so)")) << text;
+    EXPECT_FALSE(contains(text, "/build2")) << text;
 }
 
 TEST(Junit, a_wrong_row_is_a_failure_that_shows_the_first_difference)

@@ -121,7 +121,10 @@ TEST(Rows, every_usable_device_has_rows_named_by_its_index)
 
 TEST(Rows, devices_are_chosen_by_a_part_of_what_describes_them_in_any_case)
 {
-    OldHost old({device_named("Radeon", DeviceKind::gpu), device_named("llvmpipe", DeviceKind::emulated)});
+    std::vector<Device> devices = {device_named("Radeon", DeviceKind::gpu),
+                                   device_named("llvmpipe", DeviceKind::emulated)};
+    devices[1].library = "/opt/mesa/libvulkan_lvp.so";
+    OldHost old(devices);
     const auto indices = [&](const char* text) {
         std::vector<std::size_t> found;
         for (const RowKey& key :
@@ -131,12 +134,13 @@ TEST(Rows, devices_are_chosen_by_a_part_of_what_describes_them_in_any_case)
     };
     EXPECT_EQ(indices("radeON"), std::vector<std::size_t>{0});
     EXPECT_EQ(indices("EMULATED"), std::vector<std::size_t>{1});
+    EXPECT_EQ(indices("/opt/mesa/"), std::vector<std::size_t>{1});
     EXPECT_EQ(indices("radeon,pipe"), (std::vector<std::size_t>{0, 1}));
     for (const char* const text : {"geforce", "radeon,geforce"})
-        EXPECT_EQ(
-            error_of([&] { static_cast<void>(indices(text)); }),
-            "missing: --device: no device's name contains geforce (nor its driver, type, id or number); there are: "
-            "Radeon (old), llvmpipe (old:1)");
+        EXPECT_EQ(error_of([&] { static_cast<void>(indices(text)); }),
+                  "missing: --device: no device's name contains geforce (nor its driver, library, type, id or number); "
+                  "there are: "
+                  "Radeon (old), llvmpipe (old:1)");
 }
 
 TEST(Rows, an_api_without_a_device_has_rows_only_where_it_is_asked_for)

@@ -1,0 +1,92 @@
+#include "backends/vulkan/launch_case.h"
+
+#include "backends/vulkan/kernels.h"
+#include "backends/vulkan/session.h"
+#include "core/device/defects.h"
+
+#include <array>
+
+namespace tetrace {
+
+namespace vulkan_defects {
+[[nodiscard]] std::span<const EmbeddedKernel> embedded_kernels(); // see probe.cpp
+} // namespace vulkan_defects
+
+namespace vulkan {
+
+namespace {
+
+std::string code_of(std::span<const EmbeddedKernel> kernels, std::string_view name)
+{
+    const EmbeddedKernel* const kernel = find_kernel(kernels, name);
+    if (kernel == nullptr) throw Error(ErrorKind::internal, "vulkan lacks program " + std::string(name));
+    return std::string(kernel->text());
+}
+
+LaunchCase case_of(std::span<const EmbeddedKernel> kernels, const std::string& name)
+{
+    LaunchCase made;
+    made.program = {name + ".spv", "the program, SPIR-V", {}, code_of(kernels, name)};
+    made.host = {"run_case.c", "a host in C, whose head explains case.txt",
+                 "cc -O1 -o run_case run_case.c -l:libvulkan.so.1 && ./run_case",
+                 code_of(embedded_kernels(), "run_case")};
+    made.lines = {"entry main"};
+    return made;
+}
+
+LaunchCase::Input case_input(const std::string& line, const std::string& name, const std::string& what,
+                             std::span<const std::byte> bytes)
+{
+    return {line, {name + ".bin", what, {}, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size())}};
+}
+
+/// The line of an array that is read as texels, or from a storage buffer.
+std::string array_line(bool in_texels, const TexelBinding& texels)
+{
+    const char* const kind = texels.format == vk::Format::eR32Uint ? "words " : "quads ";
+    return in_texels ? kind + std::to_string(texels.binding)
+                     : "buffer " + std::to_string(texels.binding % FIRST_QUADS_BINDING);
+}
+
+} // namespace
+
+LaunchCase tile_case(const Device& device, const KernelId& kernel, const PackedScene& scene, const LaunchParams& launch,
+                     std::span<const Quad> rays)
+{
+    const bool in_texels = device.kind != DeviceKind::gpu;
+    LaunchCase made = case_of(embedded_kernels(), shader_name(kernel) + (in_texels ? "_texels" : ""));
+    const bool starts_outside = kernel.task == Task::trace && launch.start_tet == NO_TET;
+    const std::array<std::uint32_t, 5> constants = {launch.tile_height, starts_outside ? 1u : 0u, in_texels ? 1u : 0u,
+                                                    in_texels ? 0u : STACK_TOP_OF_GPUS, 0u};
+    for (std::size_t i = 0; i < constants.size(); ++i)
+        made.lines.push_back("constant " + std::to_string(i) + " " + std::to_string(constants[i]));
+    made.inputs = {case_input("push", "launch", "push constants, LaunchParams of the program",
+                              std::as_bytes(std::span(&launch, 1)))};
+    const auto buffers = scene_buffers(scene);
+    std::uint32_t bound = 0; // bits: an array that is read as words and as quads is one storage buffer
+    for (const TexelBinding& texels : texel_bindings(kernel.layout)) {
+        const std::uint32_t array = texels.binding % FIRST_QUADS_BINDING;
+        if (!in_texels && (bound >> array & 1u) != 0) continue;
+        bound |= 1u << array;
+        made.inputs.push_back(case_input(array_line(in_texels, texels), buffers[array].name,
+                                         "an array of the packed scene", buffers[array].bytes));
+    }
+    if (kernel.task == Task::rays)
+        made.inputs.push_back(case_input(array_line(in_texels, rays_as_texels), "rays", "given rays, two quads each",
+                                         std::as_bytes(rays)));
+    made.output = OUTPUT_BINDING;
+    return made;
+}
+
+LaunchCase defect_case(std::string_view name)
+{
+    LaunchCase made = case_of(vulkan_defects::embedded_kernels(), std::string(name));
+    const auto words = defect_words();
+    made.inputs = {case_input("buffer 0", "words", "what the kernel reads", std::as_bytes(std::span(words)))};
+    made.output = 1;
+    return made;
+}
+
+} // namespace vulkan
+
+} // namespace tetrace

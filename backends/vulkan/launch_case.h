@@ -1,0 +1,17 @@
+#pragma once
+
+#include "core/device/launch.h"
+
+#include <span>
+#include <string_view>
+
+namespace tetrace::vulkan {
+
+/// Backend::tile_case().
+[[nodiscard]] LaunchCase tile_case(const Device& device, const KernelId& kernel, const PackedScene& scene,
+                                   const LaunchParams& launch, std::span<const Quad> rays);
+
+/// Backend::defect_case().
+[[nodiscard]] LaunchCase defect_case(std::string_view name);
+
+} // namespace tetrace::vulkan

@@ -1,0 +1,183 @@
+#include "bench/debugging/case_files.h"
+
+#include "bench/debugging/dump.h"
+#include "bench/debugging/trace_run.h"
+#include "bench/options/identity.h"
+#include "bench/rows/row_tracing.h"
+#include "bench/rows/rows.h"
+#include "core/base/error.h"
+#include "core/device/defects.h"
+#include "core/device/given_quads.h"
+#include "core/device/launch.h"
+#include "core/device/scene_buffers.h"
+#include "core/device/session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace tetrace {
+
+namespace {
+
+using CaseWords = std::vector<std::uint32_t>;
+
+/// What a program should write: its whole output, and how far each word may be off.
+struct CaseOutput {
+    CaseWords expected, tolerances; ///< without tolerances each word is exact
+};
+
+KernelFile words_file(const char* name, const char* what, const CaseWords& words)
+{
+    return {name, what, {}, std::string(reinterpret_cast<const char*>(words.data()), words.size() * sizeof(words[0]))};
+}
+
+DumpedCase files_of_case(const LaunchCase& launch, const CaseOutput& output, const std::string& title)
+{
+    const BuildIdentity build = build_identity();
+    std::string manifest = fmt::format("# {}\n# written by tetrace {} ({})\nprogram {}\n", title, build.version,
+                                       build.commit, launch.program.name);
+    for (const std::string& line : launch.lines)
+        manifest += line + "\n";
+    manifest += "groups 1\n";
+    DumpedCase made{title, {{"case.txt", "one work-group of a launch, line by line", {}, {}}, launch.host}};
+    made.files.push_back(launch.program);
+    for (const LaunchCase::Input& input : launch.inputs) {
+        manifest += fmt::format("{} {}\n", input.line, input.file.name);
+        if (std::ranges::find(made.files, input.file.name, &KernelFile::name) == made.files.end())
+            made.files.push_back(input.file);
+    }
+    manifest += fmt::format("output {} {} {}\nexpect expected.bin\n", launch.output,
+                            output.expected.size() * sizeof(std::uint32_t), POISON);
+    made.files.push_back(words_file("expected.bin", "the whole output after the launch, in words", output.expected));
+    if (!output.tolerances.empty()) {
+        manifest += "tolerance tolerance.bin\n";
+        made.files.push_back(words_file("tolerance.bin",
+                                        "how far each word may be off: t, u and v of a hit by 3 units in the last "
+                                        "place, as division may be; without this line of case.txt, by none",
+                                        output.tolerances));
+    }
+    made.files.front().bytes = std::move(manifest);
+    return made;
+}
+
+[[noreturn]] void refuse_case(const Backend& backend)
+{
+    throw Error(ErrorKind::usage,
+                fmt::format("dump: {} has no host that runs a case without tetrace; opencl and vulkan have one",
+                            backend.name()));
+}
+
+DumpedCase defect_case(const Backend& backend, std::string_view name)
+{
+    const auto launch = backend.defect_case(name);
+    if (!launch) refuse_case(backend);
+    const Defect& defect = *std::ranges::find(all_defects(), name, &Defect::name);
+    CaseOutput output;
+    for (std::uint32_t item = 0; item < defect_items; ++item)
+        output.expected.push_back(defect.expected(item));
+    return files_of_case(*launch, output,
+                         fmt::format("{} on {}: {}; known in {}", name, backend.name(), defect.what, defect.known));
+}
+
+/// The device for which a case is written.
+Device case_target(const Options& options, const Backend& backend)
+{
+    Device gpu;
+    gpu.kind = DeviceKind::gpu;
+    if (options.devices.empty()) return gpu;
+    for (std::size_t i = 0; i < backend.devices().size(); ++i)
+        if (backend.devices()[i].usable && wanted_device(options, backend, i)) return backend.devices()[i];
+    throw Error(ErrorKind::missing, fmt::format("--device: no usable device of {} matches", backend.name()));
+}
+
+/// The row of openmp that the expected output is from.
+RowKey expecting_row(const Options& options)
+{
+    Options reference = options;
+    reference.backends = {reference_backend().name()};
+    reference.devices.clear();
+    return rows_of_ray(reference).front();
+}
+
+/// Pixels of the tile that are in the image.
+std::vector<std::size_t> rays_of_tile(const LaunchParams& launch)
+{
+    const std::uint32_t columns = (launch.width + TILE_WIDTH - 1) / TILE_WIDTH;
+    const std::uint32_t left = launch.first_tile % columns * TILE_WIDTH;
+    const std::uint32_t top = launch.first_tile / columns * launch.tile_height;
+    std::vector<std::size_t> rays;
+    for (std::uint32_t y = top; y < std::min(top + launch.tile_height, launch.height); ++y)
+        for (std::uint32_t x = left; x < std::min(left + TILE_WIDTH, launch.width); ++x)
+            rays.push_back(std::size_t{y} * launch.width + x);
+    return rays;
+}
+
+CaseOutput output_of_tile(const LaunchParams& launch, const std::vector<Hit>& hits)
+{
+    constexpr std::uint32_t division_ulps = 3; // SelfTest::allowed_ulps()
+    const std::array<std::size_t, 1> rays = {hits.size()};
+    const OutputParts parts(rays, HIT_WORDS);
+    CaseOutput output{CaseWords(parts.words(), POISON), CaseWords(parts.words(), 0)};
+    for (const std::size_t ray : rays_of_tile(launch)) {
+        const std::size_t word = GUARD_WORDS + HIT_WORDS * ray;
+        std::memcpy(&output.expected[word], &hits[ray], sizeof(Hit));
+        for (const std::size_t member : {offsetof(Hit, t), offsetof(Hit, u), offsetof(Hit, v)})
+            output.tolerances[word + member / sizeof(std::uint32_t)] = division_ulps;
+    }
+    return output;
+}
+
+std::vector<Quad> quads_of_case(SceneWork& scene, const RowRun& row)
+{
+    if (row.key.kernel.task != Task::rays) return {};
+    const RaySet& rays = rays_of(scene, row.key, 0);
+    return row.key.kernel.structure == Structure::cdt ? given_quads(rays, row.packed->data)
+                                                      : given_quads_offset(rays, scene.loaded().scene.mesh);
+}
+
+std::string title_of_tile(const SceneWork& scene, const RowKey& key, const Backend& backend, const Options& options)
+{
+    std::string title =
+        fmt::format("{} on {}: the work-group of pixel {},{} of {} x {}, view {} of {}, scene {}", name_of(key.kernel),
+                    backend.name(), options.pixel->x, options.pixel->y, scene.width(), scene.height(),
+                    scene.view_numbers().front(), camera_set_name(options), scene.label());
+    if (key.rays != RayKind::primary) title += fmt::format(", {} rays", name_of(key.rays));
+    return title;
+}
+
+DumpedCase tile_case(const Options& options, const Backend& backend)
+{
+    if (one_kernel(options).math != MathMode::exact)
+        throw Error(ErrorKind::usage, "dump: a case is of math mode exact: in fast, every driver may have other hits");
+    const RowKey key = expecting_row(options);
+    if (!backend.defect_case(all_defects().front().name)) refuse_case(backend);
+    const Device target = case_target(options, backend);
+    SceneWork scene = load_work(scene_requests(options).front(), options);
+    RowRun row = open_row(key, scene, options);
+    if (row.session == nullptr) throw Error(ErrorKind::unsupported, fmt::format("dump: openmp: {}", reason_of(row)));
+    const auto number = static_cast<std::uint32_t>(number_of_ray(scene, key, 0, *options.pixel));
+    TraceJob job = prepare_view(row, 0);
+    if (target.max_steps != 0) job.max_steps = std::min(job.max_steps, target.max_steps);
+    std::vector<Hit> hits(ray_count(row, 0));
+    static_cast<void>(row.session->trace(job, hits));
+    const PackedScene& packed = row.packed->data;
+    LaunchParams launch =
+        launch_params(job, domain_of(packed), tile_height_of(session_options(options)), TetParts{}.log2_bytes);
+    const std::uint32_t columns = (job.width + TILE_WIDTH - 1) / TILE_WIDTH;
+    launch.first_tile = number / job.width / launch.tile_height * columns + number % job.width / TILE_WIDTH;
+    const auto made = backend.tile_case(target, key.kernel, packed, launch, quads_of_case(scene, row));
+    if (!made) refuse_case(backend);
+    return files_of_case(*made, output_of_tile(launch, hits), title_of_tile(scene, key, backend, options));
+}
+
+} // namespace
+
+DumpedCase dumped_case(const Options& options, const std::vector<Backend*>& backends)
+{
+    const Backend& backend = backend_named(options.backends.front(), backends);
+    return options.defect.empty() ? tile_case(options, backend) : defect_case(backend, options.defect);
+}
+
+} // namespace tetrace

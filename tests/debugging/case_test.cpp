@@ -1,0 +1,126 @@
+#include "tests/support/program_fixture.h"
+
+#include "core/device/defects.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+using namespace tetrace;
+using namespace tetrace::test;
+
+namespace {
+
+struct CaseApi {
+    const char *name, *loader;
+};
+
+/// A case is compiled and run as somebody does who does not have tetrace.
+class Case : public ProgramTest, public testing::WithParamInterface<CaseApi> {
+protected:
+    [[nodiscard]] int shell(const std::string& command) const
+    {
+        const int status = std::system(("cd '" + folder_.path().string() + "' && " + command).c_str());
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    }
+
+    /// Why no case can be run here; empty if one can. Compiles the host of a first case.
+    std::string why_no_host()
+    {
+        const std::string name = GetParam().name;
+        const Ended ended = run("dump --backend " + name + " --defect value_after_divergent_loop --out host");
+        if (ended.code != 0) return ended.errors;
+        if (shell("command -v cc > /dev/null") != 0) return "no C compiler";
+        const std::string loader = GetParam().loader;
+        if (shell("cc -Wall -Werror -O1 -o run_case host/run_case.c -l:" + loader + " 2> cc.txt") == 0)
+            return shell("cd host && ../run_case > found.txt 2>&1") == 2 ? file("host/found.txt") : std::string();
+        const std::string problem = file("cc.txt");
+        if (contains(problem, "cannot find -l") || contains(problem, ".h: No such file")) return problem;
+        ADD_FAILURE() << problem;
+        return problem;
+    }
+
+    /// Runs the case in the folder; its output is in found.txt.
+    [[nodiscard]] int run_case(const std::string& folder, const std::string& device = "") const
+    {
+        return shell("cd " + folder + " && ../run_case '" + device + "' > ../found.txt 2>&1");
+    }
+
+    Ended dump(const std::string& arguments)
+    {
+        return run(std::string("dump --backend ") + GetParam().name + " " + arguments + " --out case");
+    }
+};
+
+constexpr const char* tile = "--scene cubes --resolution 6 --size 24x20 --pixel 12,17 ";
+
+} // namespace
+
+TEST_P(Case, of_a_reduced_kernel_shows_the_defect_exactly_where_check_sees_it)
+{
+    if (const std::string reason = why_no_host(); !reason.empty()) GTEST_SKIP() << reason;
+    const Ended check = run(std::string("check --defects --format csv --backend ") + GetParam().name);
+    for (const Defect& defect : all_defects()) {
+        ASSERT_EQ(dump("--defect " + std::string(defect.name)).code, 0);
+        const std::string row = check.out.substr(check.out.find(std::string(defect.name) + ","));
+        const bool is_seen = row.substr(0, row.find('\n')).starts_with(std::string(defect.name) + ",seen");
+        EXPECT_EQ(run_case("case"), is_seen ? 1 : 0) << defect.name << file("found.txt") << check.out;
+    }
+}
+
+TEST_P(Case, of_a_scene_gives_openmps_hits_for_tets_and_bvhs_and_all_kinds_of_rays)
+{
+    if (const std::string reason = why_no_host(); !reason.empty()) GTEST_SKIP() << reason;
+    for (const std::string kernel :
+         {"--method maria --layout tet80 --tile 8x4", "--layout bvh2 --rays diffuse",
+          "--method project --layout half32 --domain wide --device emulated", "--layout cwbvh --device emulated"}) {
+        const Ended ended = dump(tile + kernel);
+        if (ended.code == 3) continue; // no emulated device
+        ASSERT_EQ(ended.code, 0) << ended.errors;
+        EXPECT_EQ(ended.out, file("case/README.txt"));
+        EXPECT_EQ(run_case("case"), 0) << kernel << file("found.txt");
+    }
+}
+
+TEST_P(Case, names_the_first_word_that_is_not_the_expected_one)
+{
+    if (const std::string reason = why_no_host(); !reason.empty()) GTEST_SKIP() << reason;
+    ASSERT_EQ(dump(tile).code, 0);
+    std::string expected = file("case/expected.bin"), tolerance = file("case/tolerance.bin");
+    const auto allowed = tolerance.find('\x03'); // t of the tile's first pixel
+    ASSERT_NE(allowed, std::string::npos);
+    expected[allowed] = static_cast<char>(expected[allowed] ^ 1);
+    write_file(folder_ / "case/expected.bin", expected);
+    EXPECT_EQ(run_case("case"), 0) << "within the tolerance" << file("found.txt");
+    expected[allowed - 8] = static_cast<char>(expected[allowed - 8] ^ 1); // face_id
+    write_file(folder_ / "case/expected.bin", expected);
+    EXPECT_EQ(run_case("case"), 1);
+    EXPECT_TRUE(contains(file("found.txt"), fmt::format("word {} is ", allowed / 4 - 2))) << file("found.txt");
+    EXPECT_TRUE(contains(file("found.txt"), "1 of "));
+    EXPECT_EQ(run_case("case", "no such device"), 2) << file("found.txt");
+    write_file(folder_ / "case/case.txt", "programme x\n");
+    EXPECT_EQ(run_case("case"), 2) << "a line that it does not know";
+}
+
+INSTANTIATE_TEST_SUITE_P(Apis, Case,
+                         testing::Values(CaseApi{"opencl", "libOpenCL.so.1"}, CaseApi{"vulkan", "libvulkan.so.1"}),
+                         [](const auto& api) { return std::string(api.param.name); });
+
+using DumpedCases = ProgramTest;
+
+TEST_F(DumpedCases, refuse_what_is_no_case)
+{
+    const std::string scene = "--scene cubes --resolution 6 --size 24 ";
+    for (const std::string& arguments : std::vector<std::string>{
+             "--backend cuda --defect loop_of_70000_iterations", "--backend openmp --pixel 1,1 " + scene,
+             "--backend opencl --defect no_such_defect", "--backend opencl --defect steps_of_nested_loops " + scene,
+             "--backend opencl --defect steps_of_nested_loops --method maria", "--backend opencl --view 0",
+             "--backend opencl --resolution 6", "--backend opencl " + scene, "--backend opencl --pixel 24,0 " + scene,
+             "--backend opencl --math fast --pixel 1,1 " + scene,
+             "--backend opencl --layout embree --pixel 1,1 " + scene}) {
+        const Ended ended = run("dump --out out " + arguments);
+        EXPECT_EQ(ended.code, 2) << arguments << ended.out << ended.errors;
+        EXPECT_TRUE(contains(ended.errors, "dump") || contains(ended.errors, "--")) << ended.errors;
+        EXPECT_FALSE(std::filesystem::exists(folder_.path() / "out")) << arguments;
+    }
+}
