@@ -88,7 +88,7 @@ Merged merged_bench(const Shards& shards, const Options& options)
     result.missing_scenes = sentences_of(shards, "missing_scenes");
     result.missing_devices = sentences_of(shards, "missing_devices");
     result.threads = options.threads;
-    result.conditions = read_steadiness(shards.front().section()).conditions;
+    result.conditions = read_steadiness(ResultValue(shards.front().section(), "a shard")).conditions;
     for (const RowRecord& row : result.rows) {
         const auto runs = static_cast<unsigned>(std::max<std::size_t>(row.run_samples.size(), 1));
         result.measurement.runs = std::max(result.measurement.runs, runs);
