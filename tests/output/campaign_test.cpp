@@ -37,6 +37,23 @@ std::size_t occurrences(const std::string& text, const std::string& part)
     return count;
 }
 
+TEST(Campaigns, are_read_of_all_results_of_the_repository)
+{
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(TETRACE_RESULTS))
+        if (entry.path().extension() == ".json" && entry.path().parent_path() != TETRACE_RESULTS)
+            files.push_back(entry.path());
+    const Campaign campaign = read_campaign(files);
+    EXPECT_EQ(campaign.results.size(), files.size());
+    std::set<std::string> labels;
+    for (const CampaignGroup& group : campaign.groups)
+        for (const CampaignWork& work : group.works) {
+            EXPECT_FALSE(work.rates.empty()) << group.title;
+            labels.insert(work.label);
+        }
+    EXPECT_GT(labels.size(), 10u);
+}
+
 class CampaignPage : public testing::Test {
 protected:
     /// Results 000.json, 001.json, ... in a folder of their own: "0", of the next campaign "1", and so on.

@@ -67,6 +67,7 @@ TEST(Anonymous, shortens_the_paths_that_the_options_name)
     Options options;
     options.scenes = {"secret project/dragon.ply", "bunny"};
     options.code_folder = "secret project/code";
+    options.expected = {"secret project/known/"};
     options.own_cameras = OwnCameras{"mine", {}, "secret project/cameras.json"};
     options.benchmark_flags = {"--benchmark_out=secret project/gb.json", "--benchmark_filter=cdt/maria"};
     EXPECT_EQ(
@@ -75,6 +76,7 @@ TEST(Anonymous, shortens_the_paths_that_the_options_name)
                        options),
         "tetrace bench --scene 'dragon.ply' --camera-set 'cameras.json' --code 'code' '--benchmark_out=gb.json' "
         "cdt/maria");
+    EXPECT_EQ(anonymous_text("check --expect 'secret project/known/'", options), "check --expect 'known/'");
     EXPECT_EQ(anonymous_text("scene secret project/dragon.ply: broken; bunny/primary", options),
               "scene dragon.ply: broken; bunny/primary");
 }

@@ -352,6 +352,12 @@ TEST_F(Compare, of_two_checks_names_what_became_wrong_what_became_right_and_what
     EXPECT_TRUE(contains(unwrapped(allowed), row + ": B: no such row")) << allowed.out;
     EXPECT_EQ(run("compare b.json a.json").code, 0) << "a new row that is right";
     EXPECT_EQ(run("compare a.json b.json --filter none").code, 2);
+
+    after["tetrace"]["scenes"][0]["width"] = 32;
+    write("b.json", after);
+    const Ended other_work = run("compare a.json b.json --allow-missing");
+    EXPECT_EQ(other_work.code, 2) << other_work.out;
+    EXPECT_TRUE(contains(other_work.errors, "measure B with --size 16x16")) << other_work.errors;
 }
 
 TEST_F(Compare, takes_two_files_and_more)

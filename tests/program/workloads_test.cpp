@@ -45,17 +45,17 @@ TEST_F(WorkloadRuns, compare_with_the_result_that_the_documentation_names)
 {
     if (!why_not_available("bunny-1").empty()) GTEST_SKIP() << why_not_available("bunny-1");
     const std::string page = read_text(TETRACE_DOCS "/results.md");
-    std::smatch found;
+    std::smatch found, measure;
     ASSERT_TRUE(std::regex_search(page, found, std::regex("tetrace compare (results/[^ ]+) result.json")));
-    // One row of the default's, with its scene, views and size.
-    const Ended measured = run("bench --scene bunny-1 --views 0,1 --filter '^cdt/project/half32/bunny/.*openmp$' "
-                               "--schedule tiles --samples 3 --sample-time 0 --out result.json");
+    ASSERT_TRUE(std::regex_search(page, measure, std::regex("tetrace (bench .*--out result.json)")));
+    // One of the rows that this measures.
+    const Ended measured = run(measure[1].str() + " --filter '^cdt/project/half32/bunny/.*openmp$' --schedule tiles");
     ASSERT_EQ(measured.code, 0) << measured.errors;
     EXPECT_EQ(nlohmann::json::parse(file("result.json")).at("tetrace").at("scenes")[0].at("pinned"), "bunny-1");
     const Ended compared = run("compare " TETRACE_ROOT "/" + found[1].str() +
                                " result.json --filter "
                                "'^cdt/project/half32/bunny/primary/math:exact/api:openmp$'");
-    EXPECT_EQ(compared.code, 0) << compared.out << compared.errors;
+    EXPECT_LE(compared.code, 1) << "faster or slower than that machine\n" << compared.out << compared.errors;
     EXPECT_TRUE(contains(compared.out, "Compared  1 of 1 rows")) << compared.out;
     EXPECT_FALSE(contains(compared.out, "DIFFERENT")) << compared.out;
 }
