@@ -7,8 +7,7 @@ namespace tetrace::vulkan {
 /// The SPIR-V of each program: embedded_name() of a kernel followed by its task, "_texels" where the scene is read as
 /// texels, "_leaves_texels" and "_left_texels" if rays at ties are deferred and traced (docs/spec/devices.md, W9),
 /// "_parts" where the tets are in several buffers (task trace only); of layout rt, "_pipeline" for the ray generation
-/// shader of a ray-tracing pipeline, and rt_miss and rt_hit; "probe_exact", "probe_fast" and "empty"; and
-/// "run_case", the host of a LaunchCase.
+/// shader of a ray-tracing pipeline, and rt_miss and rt_hit; "probe_exact", "probe_fast" and "empty".
 [[nodiscard]] std::span<const EmbeddedKernel> embedded_kernels();
 
 /// What a ray-tracing pipeline runs for rays that meet nothing, and for their hits.

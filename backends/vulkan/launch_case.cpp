@@ -9,7 +9,7 @@
 namespace tetrace {
 
 namespace vulkan_defects {
-[[nodiscard]] std::span<const EmbeddedKernel> embedded_kernels(); // see probe.cpp
+[[nodiscard]] std::span<const EmbeddedKernel> embedded_kernels(); // as in probe.cpp; and "run_case", the host
 } // namespace vulkan_defects
 
 namespace vulkan {
@@ -29,7 +29,7 @@ LaunchCase case_of(std::span<const EmbeddedKernel> kernels, const std::string& n
     made.program = {name + ".spv", "the program, SPIR-V", {}, code_of(kernels, name)};
     made.host = {"run_case.c", "a host in C, whose head explains case.txt",
                  "cc -O1 -o run_case run_case.c -l:libvulkan.so.1 && ./run_case",
-                 code_of(embedded_kernels(), "run_case")};
+                 code_of(vulkan_defects::embedded_kernels(), "run_case")};
     made.lines = {"entry main"};
     return made;
 }
