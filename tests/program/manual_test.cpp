@@ -100,7 +100,7 @@ TEST_F(Manual, bash_completes_the_values_of_options_also_in_lists_and_after_an_e
 {
     EXPECT_EQ(completed("tetrace bench --backend open", 3), "openmp opencl\n");
     EXPECT_EQ(completed("tetrace bench --backend openmp,vul", 3), "openmp,vulkan\n");
-    EXPECT_EQ(completed("tetrace bench --scene = arm", 4), "armadillo\n");
+    EXPECT_EQ(completed("tetrace bench --scene = arm", 4), "armadillo armadillo-1\n");
     EXPECT_EQ(completed("tetrace bench --math =", 3), "exact fast\n");
     EXPECT_EQ(completed("tetrace reproduce figu", 2), "figure6\n");
     EXPECT_EQ(completed("tetrace bench --samples \"\"", 3), "\n") << "a number";

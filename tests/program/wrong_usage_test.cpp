@@ -24,7 +24,7 @@ constexpr Wrong wrong_usages[] = {
     {"help becnh", 2, "help: 'becnh' is not accepted; did you mean bench? Accepted: devices, "},
     {"help bench check", 2, "help: 'check' is not expected; usage: tetrace help [VERB [all] | TOPIC]"},
     {"help man all", 2, "help: 'all' is not expected; usage: "},
-    {"bench bunny --scen", 2, "bench: '--scen' is not an option; did you mean --scene?\naccepted options: --scene, "},
+    {"bench bunny --scen", 2, "bench: '--scen' is not an option; did you mean --scene?\naccepted options: "},
     {"bench bunny", 2, "bench: 'bunny' is not expected; a scene is '--scene bunny'\naccepted options: "},
     {"bench -x", 2, "bench: '-x' is not an option\naccepted options: "},
     {"bench --scene", 2, "bench: --scene needs a value: SCENE\naccepted options: "},
