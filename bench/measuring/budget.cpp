@@ -16,7 +16,7 @@ namespace {
 
 constexpr double slack = 0.25;      // of the budget, see the class
 constexpr double telling_s = 0.1;   // launch overhead is a small part of a probe that takes this long
-constexpr double estimating = 0.03; // of the budget: probes of all rows that take this long together tell enough
+constexpr double estimating = 0.03; // of the budget: probes of all rows that take this long together are enough
 constexpr double patience = 0.02;   // of what is left of the budget: a probe that takes this long is not repeated
 constexpr unsigned coarsest_step = 16;
 

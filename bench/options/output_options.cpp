@@ -61,7 +61,8 @@ std::vector<OptionRow> output_options()
          measuring | bit(Verb::compare) | bit(Verb::show) | bit(Verb::merge), true, append_text(&Options::columns),
          usual_for(~measuring, "only these columns: mrays_per_s,spread")},
         {"Output", "--brief", "",
-         "Print one screen: the machine, the five most telling rows, the score, what is compared, and whether to trust "
+         "Print one screen: the machine, the five rows that matter most, the score, what is compared, and whether to "
+         "trust "
          "it. Files have everything.",
          bit(Verb::bench) | bit(Verb::show), false, set(&Options::brief),
          usual_for(every_verb, "one screen, with a score")},
