@@ -68,7 +68,8 @@ std::vector<std::byte> compressed(std::span<const std::byte> bytes)
     const lzma_ret result = lzma_stream_buffer_encode(
         filters, LZMA_CHECK_CRC64, nullptr, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(),
         reinterpret_cast<unsigned char*>(stream.data()), &written, stream.size());
-    if (result != LZMA_OK) throw Error(ErrorKind::internal, fmt::format("storing tets: xz says {}", result));
+    if (result != LZMA_OK)
+        throw Error(ErrorKind::internal, fmt::format("storing tets: xz says {}", static_cast<int>(result)));
     stream.resize(written);
     return stream;
 }

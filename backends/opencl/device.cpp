@@ -108,6 +108,7 @@ void describe(const cl::Platform& platform, FoundDevice& found)
     const std::string driver_version = trimmed(device.getInfo<CL_DRIVER_VERSION>());
     facts.driver = platform_name + " " + driver_version;
     facts.implementation = implementation_of(platform_name, driver_version, platform_version);
+    found.keeps_programs = facts.implementation.starts_with("pocl-");
     facts.uuid = uuid_of(device);
     facts.pci = pci_of(device);
     facts.library = library_of(platform);

@@ -15,7 +15,9 @@ struct FoundDevice {
     cl_device_id id = nullptr; ///< not cl::Device, which calls the driver at exit: it may be unloaded by then
     std::string build_key; ///< platform, driver and device with versions: compiled programs are valid only for these
     bool divides_correctly = false; ///< offers correctly rounded division and square root, as a build option
-    unsigned stack_top = 0;         ///< how many entries of a ray's stack are in local memory (kernels/stack.h)
+    /// PoCL keeps compiled kernels in a cache of its own, and compiles each once more if it is asked for its program.
+    bool keeps_programs = false;
+    unsigned stack_top = 0; ///< how many entries of a ray's stack are in local memory (kernels/stack.h)
 };
 
 /// Every device of every platform, or one entry that says why there is none. Throws nothing.

@@ -107,7 +107,7 @@ void Program::compile(Context& context, const ProgramId& id, std::string_view so
 
 void Program::keep() const
 {
-    if (is_cached_) return;
+    if (is_cached_ || !cache_.keeps()) return;
     try {
         const auto binaries = handle_.getInfo<CL_PROGRAM_BINARIES>();
         if (binaries.size() == 1 && !binaries.front().empty()) cache_.keep(key_, binaries.front());

@@ -35,7 +35,8 @@ cl::Buffer make_uploaded(const cl::Context& context, const cl::CommandQueue& que
 
 OpenclSession::OpenclSession(std::shared_ptr<Context> context, const KernelId& kernel, const PackedScene& scene,
                              const SessionOptions& options)
-    : context_(std::move(context)), kernel_id_(kernel), cache_(options.program_cache),
+    : context_(std::move(context)), kernel_id_(kernel),
+      cache_(context_->found().keeps_programs ? std::filesystem::path() : options.program_cache),
       starts_outside_(kernel.task == Task::trace && structure_of(kernel.layout) == Structure::cdt),
       tile_height_(tile_height_of(options)), max_buffer_bytes_(max_buffer(context_->facts(), options)),
       domain_(domain_of(scene)), tet_parts_(tet_parts(scene, max_buffer_bytes_)), scene_bytes_(scene.bytes()),

@@ -18,6 +18,8 @@ public:
     /// folder: created when first written to; empty: nothing is kept.
     explicit ProgramCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
+    /// Whether it has a folder.
+    [[nodiscard]] bool keeps() const { return !folder_.empty(); }
     /// The program kept under a key; empty if there is none, or it is damaged.
     [[nodiscard]] std::optional<std::vector<unsigned char>> find(std::uint64_t key) const;
     void keep(std::uint64_t key, std::span<const unsigned char> program) const;

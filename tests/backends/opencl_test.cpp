@@ -20,6 +20,16 @@ namespace {
 class Opencl : public UsableDevices {
 protected:
     Opencl() : UsableDevices(opencl_backend()) {}
+
+    /// A session whose program tetrace keeps, which it leaves to PoCL otherwise.
+    static std::unique_ptr<opencl::OpenclSession> keeping(std::size_t device, const DeviceRays& rays,
+                                                          const SessionOptions& options, const KernelId& kernel = {})
+    {
+        opencl::FoundDevice found = opencl::find_devices().at(device);
+        found.keeps_programs = false;
+        return std::make_unique<opencl::OpenclSession>(std::make_shared<opencl::Context>(found, 0), kernel,
+                                                       rays.data().packed, options);
+    }
 };
 
 } // namespace
@@ -31,11 +41,11 @@ TEST_F(Opencl, a_second_session_finds_its_program_in_the_cache)
     for (const std::size_t device : usable) {
         const TemporaryFolder folder;
         const SessionOptions options{.program_cache = folder / "programs"};
-        EXPECT_FALSE(backend.open(device, {}, rays.data(), options)->setup_times().compile_cached);
-        const auto second = backend.open(device, {}, rays.data(), options);
+        EXPECT_FALSE(keeping(device, rays, options)->setup_times().compile_cached);
+        const auto second = keeping(device, rays, options);
         EXPECT_TRUE(second->setup_times().compile_cached);
         EXPECT_EQ(different_rays(traced(*second, job), openmp_hits(rays, job), 3), 0u);
-        EXPECT_FALSE(backend.open(device, {.math = MathMode::fast}, rays.data(), options)->setup_times().compile_cached)
+        EXPECT_FALSE(keeping(device, rays, options, {.math = MathMode::fast})->setup_times().compile_cached)
             << "another math mode is another program";
     }
 }
@@ -64,7 +74,7 @@ TEST_F(Opencl, survives_a_damaged_program_cache_and_mends_it)
     const TemporaryFolder folder;
     const SessionOptions options{.program_cache = folder / "programs"};
     const std::size_t device = usable.front();
-    (void)backend.open(device, {}, rays.data(), options);
+    (void)keeping(device, rays, options);
     const fs::path file = fs::directory_iterator(folder / "programs")->path();
     const std::string whole = read_text(file);
     const auto bent = [&](std::size_t position) {
@@ -75,10 +85,10 @@ TEST_F(Opencl, survives_a_damaged_program_cache_and_mends_it)
     for (const std::string& damaged : {std::string(), whole.substr(0, 7), whole.substr(0, whole.size() / 2), bent(0),
                                        bent(whole.size() - 1), std::string(100, 'x')}) {
         write_file(file, damaged);
-        const auto session = backend.open(device, {}, rays.data(), options);
+        const auto session = keeping(device, rays, options);
         EXPECT_FALSE(session->setup_times().compile_cached);
         EXPECT_EQ(different_rays(traced(*session, job), openmp_hits(rays, job), 3), 0u);
-        EXPECT_TRUE(backend.open(device, {}, rays.data(), options)->setup_times().compile_cached);
+        EXPECT_TRUE(keeping(device, rays, options)->setup_times().compile_cached);
     }
 }
 
@@ -87,7 +97,17 @@ TEST_F(Opencl, does_without_a_cache_that_cannot_be_written)
     const DeviceRays rays(make_cubes(3), Layout::tet80);
     const TemporaryFolder folder;
     write_file(folder / "file", "not a folder");
-    EXPECT_NO_THROW((void)backend.open(usable.front(), {}, rays.data(), {.program_cache = folder / "file"}));
+    EXPECT_NO_THROW((void)keeping(usable.front(), rays, {.program_cache = folder / "file"}));
+}
+
+TEST_F(Opencl, leaves_programs_to_a_driver_that_keeps_them_itself)
+{
+    const DeviceRays rays(make_cubes(3), Layout::tet80);
+    for (const std::size_t device : usable) {
+        const TemporaryFolder folder;
+        (void)backend.open(device, {}, rays.data(), {.program_cache = folder / "programs"});
+        EXPECT_EQ(fs::exists(folder / "programs"), !opencl::find_devices().at(device).keeps_programs);
+    }
 }
 
 TEST_F(Opencl, a_buffer_fits_into_a_devices_memory)
