@@ -28,7 +28,7 @@ protected:
         opencl::FoundDevice found = opencl::find_devices().at(device);
         found.keeps_programs = false;
         return std::make_unique<opencl::OpenclSession>(std::make_shared<opencl::Context>(found, 0), kernel,
-                                                       rays.data().packed, options);
+                                                       rays.packed(), options);
     }
 };
 
@@ -55,15 +55,15 @@ TEST_F(Opencl, hits_of_bvhs_are_openmps_however_much_of_a_stack_is_in_the_groups
     for (const Layout layout : {Layout::bvh2, Layout::bvh4, Layout::cwbvh}) {
         const StackCase stacks(layout);
         for (opencl::FoundDevice found : opencl::find_devices())
-            for (const unsigned stack_top : {0u, 1u, STACK_TOP_OF_GPUS})
-                for (const unsigned tile_height : {4u, 8u}) {
-                    if (!found.facts.usable) continue;
-                    found.stack_top = stack_top;
-                    opencl::OpenclSession session(std::make_shared<opencl::Context>(found, 0), stacks.kernel,
-                                                  stacks.full.packed, {.tile_height = tile_height});
-                    EXPECT_EQ(stacks.wrong_rays(session), 0u) << found.facts.name << ' ' << name_of(layout) << ' '
-                                                              << stack_top << " entries, tile height " << tile_height;
-                }
+            for (const auto& [stack_top, tile_height] :
+                 {std::pair{0u, 8u}, std::pair{1u, 4u}, std::pair{STACK_TOP_OF_GPUS, 8u}}) {
+                if (!found.facts.usable) continue;
+                found.stack_top = stack_top;
+                opencl::OpenclSession session(std::make_shared<opencl::Context>(found, 0), stacks.kernel,
+                                              stacks.full.packed, {.tile_height = tile_height});
+                EXPECT_EQ(stacks.wrong_rays(session), 0u) << found.facts.name << ' ' << name_of(layout) << ' '
+                                                          << stack_top << " entries, tile height " << tile_height;
+            }
     }
 }
 
