@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/statvfs.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -60,6 +61,24 @@ fs::path make_temporary()
     return {};
 }
 
+/// In a process of its own, to which no signal of a terminal comes: waits until the other end of the pipe is closed,
+/// and removes the folder unless something was written to it first. It holds no stream: a reader of this program's
+/// output does not wait for it.
+[[noreturn]] void wait_and_remove(const fs::path& folder, int pipe)
+{
+    ::setsid();
+    ::dup2(pipe, STDIN_FILENO);
+    ::close_range(STDIN_FILENO + 1, ~0u, 0);
+    char word = 0;
+    ssize_t got = 0;
+    do
+        got = ::read(STDIN_FILENO, &word, 1);
+    while (got < 0 && errno == EINTR);
+    std::error_code ignored; // nothing depends on it
+    if (got == 0) fs::remove_all(folder, ignored);
+    ::_exit(0);
+}
+
 fs::path& closed_home()
 {
     static fs::path home;
@@ -100,6 +119,7 @@ CacheHome::CacheHome()
     if (closed.empty()) return;
     temporary_ = make_temporary();
     if (temporary_.empty()) return;
+    start_remover();
     if (!reason.empty()) closed_home() = home;
     runs_programs_ = runs_programs(temporary_);
     for (const char* const variable : closed)
@@ -108,9 +128,34 @@ CacheHome::CacheHome()
 
 CacheHome::~CacheHome()
 {
-    if (temporary_.empty() || keeps_) return;
+    dismiss_remover();
     std::error_code ignored; // nothing depends on it
-    fs::remove_all(temporary_, ignored);
+    if (remover_ < 0 && !temporary_.empty() && !keeps_) fs::remove_all(temporary_, ignored);
+}
+
+void CacheHome::keep()
+{
+    keeps_ = true;
+    if (remover_ > 0) static_cast<void>(!::write(pipe_, "k", 1));
+    dismiss_remover();
+}
+
+void CacheHome::start_remover()
+{
+    int ends[2] = {};
+    if (::pipe2(ends, O_CLOEXEC) != 0) return;
+    remover_ = ::fork();
+    if (remover_ == 0) wait_and_remove(temporary_, ends[0]);
+    ::close(ends[0]);
+    pipe_ = ends[1];
+}
+
+void CacheHome::dismiss_remover()
+{
+    if (pipe_ < 0) return;
+    ::close(pipe_);
+    pipe_ = -1;
+    if (remover_ > 0) ::waitpid(remover_, nullptr, 0);
 }
 
 std::string CacheHome::note() const

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <filesystem>
 #include <string>
 
@@ -15,8 +17,8 @@ namespace tetrace {
 /// Gives this process, and those that it starts, a temporary folder for caches if the usual one cannot be written to,
 /// as in containers: PoCL has no device without one. XDG_CACHE_HOME then names it, as do POCL_CACHE_DIR and
 /// MESA_SHADER_CACHE_DIR if they were set to folders that cannot be written to. Make it before any driver is loaded and
-/// any thread is started. The folder is removed with it, but not by a signal
-/// that ends the program.
+/// any thread is started. The folder is removed with it, and by a process that waits for this one's
+/// end if a signal is that.
 class CacheHome {
 public:
     CacheHome();
@@ -25,15 +27,20 @@ public:
     CacheHome& operator=(const CacheHome&) = delete;
 
     /// Leaves the folder where it is.
-    void keep() { keeps_ = true; }
+    void keep();
     /// What the user should know; empty if the usual folder is used.
     [[nodiscard]] std::string note() const;
 
 private:
+    void start_remover();
+    void dismiss_remover();
+
     std::string closed_; ///< "/root/.cache cannot be written to (Read-only file system)"; empty: all is as usual
     std::filesystem::path temporary_;
     bool runs_programs_ = true; ///< whether code in temporary_ may be loaded
     bool keeps_ = false;
+    pid_t remover_ = -1; ///< removes temporary_ when this process has ended
+    int pipe_ = -1;      ///< to it
 };
 
 } // namespace tetrace

@@ -361,9 +361,10 @@ Scene finish_scene(PreparedScene prepared, const RawTets& output, const BuilderT
     Rounding rounding;
     scene.tets = convert_tets(output, scene.mesh, scene.domain, rounding);
     if (rounding.damaged > 0)
-        talk.note(fmt::format(
-            "{} tets flat or inverted after rounding to float, {} of them mended by moving {} Steiner points",
-            rounding.damaged, rounding.repaired, rounding.moved_points));
+        talk.note(fmt::format("{} tets flat or inverted after rounding to float, {} of them mended: {} Steiner points "
+                              "moved, {} removed, {} cavities filled with other tets",
+                              rounding.damaged, rounding.repaired, rounding.moved_points, rounding.removed_points,
+                              rounding.refilled));
     require_sound(scene, output, rounding);
     require_sound_sides(scene, output);
     if (scene.build.optimised.asked == TetsKind::rays) optimise_for_rays(scene, output.maker, prepared.limits, talk);

@@ -1,7 +1,13 @@
 #include "core/base/cache_home.h"
 #include "tests/support/temporary_folder.h"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
 #include <optional>
+#include <thread>
 
 using namespace tetrace;
 using namespace tetrace::test;
@@ -55,6 +61,25 @@ TEST_F(CacheHomes, closed_one_is_replaced_by_a_temporary_folder_that_is_removed)
         EXPECT_EQ(CacheHome().note(), "") << "a process that is started from this one has what it needs";
     }
     EXPECT_EQ(temporary_folders(), 0u);
+}
+
+TEST_F(CacheHomes, temporary_folder_is_removed_after_a_signal_ends_the_program)
+{
+    for (const int signal : {SIGKILL, SIGHUP, SIGINT}) {
+        const pid_t program = ::fork();
+        if (program == 0) {
+            const CacheHome cache;
+            write_file(cache_home() / "scene", "x");
+            if (temporary_folders() == 1) ::raise(signal);
+            ::_exit(0);
+        }
+        int status = 0;
+        ASSERT_EQ(::waitpid(program, &status, 0), program);
+        EXPECT_TRUE(WIFSIGNALED(status)) << "it had a folder";
+        for (int i = 0; i < 3000 && temporary_folders() > 0; ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        EXPECT_EQ(temporary_folders(), 0u);
+    }
 }
 
 TEST_F(CacheHomes, folder_that_is_kept_is_named)

@@ -1,6 +1,7 @@
 // What the builder makes of TetGen's tets: a sound scene of every kind of mesh, mended where rounding inverts a tet,
 // and refused where the output is absurd.
 #include "core/base/exact.h"
+#include "scenes/builder/cavity_fill.h"
 #include "scenes/builder/convert_tets.h"
 #include "scenes/builder/failure.h"
 #include "scenes/builder/run_cgal.h"
@@ -8,7 +9,9 @@
 #include "tests/support/builder_meshes.h"
 #include "tests/support/sound_tets.h"
 
+#include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 using namespace tetrace;
@@ -53,11 +56,11 @@ Scene build(const BuilderOptions& options, const BuilderTalk& talk = silence())
 TetMesh four_tets(Float3 middle)
 {
     TetMesh mesh{{{0, 0, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}, {0, 0, 0.5f}, middle}, {}};
-    for (std::size_t i = 0; i < 4; ++i) {
-        Tet tet{{1, 0, 2, 3},
-                {NO_HALF_FACE, NO_HALF_FACE, NO_HALF_FACE, NO_HALF_FACE},
-                {FREE_FACE, FREE_FACE, FREE_FACE, FREE_FACE}};
+    for (std::uint32_t i = 0; i < 4; ++i) {
+        Tet tet{{1, 0, 2, 3}, {}, {FREE_FACE, FREE_FACE, FREE_FACE, FREE_FACE}};
         tet.vertices[i] = 4;
+        for (std::uint32_t k = 0; k < 4; ++k) // the one across corner k has the middle there
+            tet.neighbours[k] = k == i ? NO_HALF_FACE : make_half_face(k, i);
         mesh.tets.push_back(tet);
     }
     return mesh;
@@ -169,10 +172,7 @@ TEST(SteinerRounding, mends_inverted_and_flat_tets_by_a_near_float)
         TetMesh mesh = four_tets({0.125f, 0.125f, depth});
         std::vector<Freedom> freedom(5);
         freedom[4] = {{true, true, true}, 1 << 12};
-        const auto [before, after, moved] = mend_tets(mesh, freedom);
-        EXPECT_EQ(before, 1u);
-        EXPECT_EQ(after, 0u);
-        EXPECT_EQ(moved, 1u);
+        EXPECT_EQ(mend_tets(mesh, freedom), (Rounding{.damaged = 1, .repaired = 1, .moved_points = 1}));
         EXPECT_NEAR(mesh.vertices[4].z, 0, 0x1p-18);
         for (const Tet& tet : mesh.tets)
             EXPECT_LT(orientation(mesh.vertices[tet.vertices[0]], mesh.vertices[tet.vertices[1]],
@@ -186,10 +186,118 @@ TEST(SteinerRounding, leaves_what_may_not_move)
     TetMesh mesh = four_tets({0.125f, 0.125f, -0x1p-20f});
     const TetMesh before = mesh;
     std::vector<Freedom> freedom(5);
-    EXPECT_EQ(mend_tets(mesh, freedom)[1], 1u);
+    EXPECT_EQ(mend_tets(mesh, freedom), Rounding{.damaged = 1});
     freedom[4] = {{true, true, false}, 1 << 12};
-    EXPECT_EQ(mend_tets(mesh, freedom)[1], 1u);
+    EXPECT_EQ(mend_tets(mesh, freedom), Rounding{.damaged = 1});
     EXPECT_EQ(mesh, before);
+}
+
+namespace {
+
+/// Of each vertex, the triangles that faces at it are parts of; and whether it may move: Steiner points off the
+/// domain's sides.
+struct Vertices {
+    std::vector<std::set<std::uint32_t>> triangles;
+    std::vector<Freedom> freedom;
+};
+
+Vertices vertices_of(const Scene& scene)
+{
+    const std::size_t inputs = scene.mesh.vertices.size() + domain_surface(scene.domain).vertices.size();
+    Vertices result{std::vector<std::set<std::uint32_t>>(scene.tets.vertices.size()),
+                    std::vector<Freedom>(scene.tets.vertices.size())};
+    for (std::size_t i = inputs; i < result.freedom.size(); ++i)
+        result.freedom[i] = {{true, true, true}, 1};
+    for (const Tet& tet : scene.tets.tets)
+        for (std::uint32_t face = 0; face < 4; ++face)
+            for (const std::uint32_t corner : face_corners[face]) {
+                if (tet.faces[face] != FREE_FACE) result.triangles[tet.vertices[corner]].insert(tet.faces[face]);
+                if (tet.neighbours[face] == NO_HALF_FACE) result.freedom[tet.vertices[corner]] = {};
+            }
+    return result;
+}
+
+/// A neighbour that is on the same triangles; the vertex itself if it has none.
+std::uint32_t neighbour_of(const TetMesh& mesh, const Vertices& vertices, std::uint32_t vertex)
+{
+    for (const Tet& tet : mesh.tets)
+        if (std::ranges::find(tet.vertices, vertex) != tet.vertices.end())
+            for (const std::uint32_t other : tet.vertices)
+                if (other != vertex && std::ranges::includes(vertices.triangles[other], vertices.triangles[vertex]))
+                    return other;
+    return vertex;
+}
+
+} // namespace
+
+TEST_F(Builder, mends_tets_that_a_steiner_point_far_off_its_place_inverts)
+{
+    const Scene scene = build(options(flat_cube(1), DomainKind::wide, "pq1.6a0.0002"));
+    const Vertices vertices = vertices_of(scene);
+    constexpr std::size_t enough = 12;
+    std::array<std::size_t, 3> tried{}, mended{}; // inside, in a triangle, on an edge
+    for (std::uint32_t vertex = 0; vertex < vertices.freedom.size(); ++vertex) {
+        const std::size_t kind = std::min<std::size_t>(vertices.triangles[vertex].size(), 2);
+        if (vertices.freedom[vertex].steps == 0 || tried[kind] == enough) continue;
+        const std::uint32_t other = neighbour_of(scene.tets, vertices, vertex);
+        if (other == vertex) continue;
+        ++tried[kind];
+        TetMesh mesh = scene.tets;
+        const Double3 from = to_double(mesh.vertices[vertex]), to = to_double(mesh.vertices[other]);
+        mesh.vertices[vertex] = snap_to_grid(to_float(from + (to - from) * 1.25));
+        const Rounding done = mend_tets(mesh, vertices.freedom);
+        EXPECT_GT(done.damaged, 0u);
+        if (done.repaired < done.damaged) continue;
+        ++mended[kind];
+        EXPECT_FALSE(find_defect(mesh, scene.mesh.triangles.size()));
+        EXPECT_FALSE(find_gap(mesh, scene.mesh, to_double(scene.domain.high()) - to_double(scene.domain.low())));
+        Scene after = scene;
+        after.tets = mesh;
+        expect_faces_inside_their_triangles(after);
+    }
+    for (std::size_t kind = 0; kind < 3; ++kind) {
+        EXPECT_GE(tried[kind], 5u) << kind;
+        EXPECT_GE(4 * mended[kind], 3 * tried[kind]) << kind;
+    }
+}
+
+TEST(CavityFill, finds_tets_where_there_are_some)
+{
+    // Schoenhardt's: a prism whose lid is turned, so that its sides bend inwards and no tet of its corners is inside.
+    std::vector<Float3> points;
+    for (int i = 0; i < 6; ++i) {
+        const double angle = 2 * M_PI * (i % 3) / 3 + (i < 3 ? 0 : M_PI / 6);
+        points.push_back(to_float({0.5 * std::cos(angle), 0.5 * std::sin(angle), i < 3 ? 0.0 : 0.5}));
+    }
+    points.push_back({0, 0, 0.25f});
+    const auto fill = [&](bool bent, bool with_middle) {
+        std::set<FaceSide> front{{0, 1, 2}, {3, 5, 4}};
+        for (std::uint32_t i = 0; i < 3; ++i) {
+            const std::uint32_t a = i, b = (i + 1) % 3, c = 3 + a, d = 3 + b;
+            for (const std::array<std::uint32_t, 4>& tet :
+                 {std::array{6u, a, c, bent ? d : b}, {6u, bent ? a : c, d, b}})
+                front.insert(side_of(tet, 0));
+        }
+        std::set<std::uint32_t> vertices{0, 1, 2, 3, 4, 5};
+        if (with_middle) vertices.insert(6);
+        CavityFill cavity(points, front, vertices, 1000);
+        const bool found = cavity.find(with_middle ? std::set<std::uint32_t>{6} : std::set<std::uint32_t>{});
+        double volume = 0;
+        for (const auto& [a, b, c, d] : cavity.tets()) {
+            const Double3 o = to_double(points[a]);
+            EXPECT_LT(orientation(points[a], points[b], points[c], points[d]), 0);
+            volume -= dot(to_double(points[b]) - o, cross(to_double(points[c]) - o, to_double(points[d]) - o)) / 6;
+        }
+        return std::pair(found, volume);
+    };
+    const double inwards = 0.108253, outwards = 0.202003;
+    EXPECT_EQ(fill(true, false), std::pair(false, 0.0));
+    EXPECT_TRUE(fill(true, true).first);
+    EXPECT_NEAR(fill(true, true).second, inwards, 1e-6);
+    for (const bool with_middle : {false, true}) {
+        EXPECT_TRUE(fill(false, with_middle).first);
+        EXPECT_NEAR(fill(false, with_middle).second, outwards, 1e-6);
+    }
 }
 
 TEST_F(Builder, fills_both_domains_round_every_kind_of_mesh)

@@ -19,11 +19,6 @@ using Triple = std::array<std::uint32_t, 3>;
 
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-Edge side_of(const Triple& triangle, std::size_t i)
-{
-    return edge_of(triangle[i], triangle[(i + 1) % 3]);
-}
-
 bool has(const Triple& triangle, std::uint32_t vertex)
 {
     return std::ranges::find(triangle, vertex) != triangle.end();

@@ -2,6 +2,7 @@
 
 #include "core/mesh/triangle_mesh.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -17,6 +18,12 @@ using Edge = std::pair<std::uint32_t, std::uint32_t>;
 [[nodiscard]] inline Edge edge_of(std::uint32_t a, std::uint32_t b)
 {
     return std::minmax(a, b);
+}
+
+/// From corner i of a triangle to the next.
+[[nodiscard]] inline Edge side_of(const std::array<std::uint32_t, 3>& triangle, std::size_t i)
+{
+    return edge_of(triangle[i], triangle[(i + 1) % 3]);
 }
 
 /// Where triangles come near each other.

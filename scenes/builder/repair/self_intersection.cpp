@@ -32,10 +32,13 @@ std::vector<Point> to_points(const TriangleMesh& mesh)
 // Turned so that the corners that `other` has come first.
 Triple shared_first(const Triple& triangle, const Triple& other, int& shared)
 {
-    const auto is_shared = [&](std::uint32_t v) { return std::find(other.begin(), other.end(), v) != other.end(); };
-    Triple turned = triangle;
-    const auto middle = std::stable_partition(turned.begin(), turned.end(), is_shared);
-    shared = static_cast<int>(middle - turned.begin());
+    Triple turned{};
+    std::size_t placed = 0;
+    for (const bool wanted : {true, false}) {
+        for (const std::uint32_t corner : triangle)
+            if ((std::ranges::find(other, corner) != other.end()) == wanted) turned[placed++] = corner;
+        if (wanted) shared = static_cast<int>(placed);
+    }
     return turned;
 }
 
