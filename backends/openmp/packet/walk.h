@@ -99,9 +99,11 @@ LANE_FN Mask end_across(const Walk<z>& walk, Mask is_end, Words& exit)
 // The exits of lanes. replaced: masks of the lanes in which the apex replaces each carried vertex.
 LANE_FN Words exits_of(WalkState& state, const Mask* replaced, const Words* exits)
 {
-    const Words place = select(replaced[1], all(1u), select(replaced[2], all(2u), Words{})) - state.rotation;
-    const Words index = least(place, place + all(3u)); // of the corner; a value below 0 wraps to a large number
-    const Words exit = select(equal(index, all(1u)), exits[1], select(equal(index, all(2u)), exits[2], exits[0]));
+    const Mask once = equal(state.rotation, all(1u)), twice = equal(state.rotation, all(2u));
+    const auto turned_by = [&](uint i) { // what place i has: corner (i - rotation) % 3
+        return select(once, exits[(i + 2) % 3], select(twice, exits[(i + 1) % 3], exits[i]));
+    };
+    const Words exit = select(replaced[1], turned_by(1), select(replaced[2], turned_by(2), turned_by(0)));
     const Words turned = state.rotation + (exit & all(3u));
     state.rotation = least(turned, turned - all(3u));
     return exit;
@@ -126,8 +128,10 @@ LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint step
     // half-faces cause; both functions then replace the third vertex.
     const Mask first = without(s2.left, s1.left), second = without(s0.left, s2.left);
     const Mask replaced[3] = {first, second, neither(first, second)};
-    for (uint i = 0; i < 3; ++i)
-        walk.carried[i] = select(replaced[i], apex, walk.carried[i]);
+    for (uint i = 0; i < 3; ++i) {
+        replace(replaced[i], apex.x, walk.carried[i].x);
+        replace(replaced[i], apex.y, walk.carried[i].y);
+    }
     Words exit = exits_of(walk, replaced, at.exits.of);
     const uint ties = walk.live & lanes_of(s0.tie | s1.tie | s2.tie);
     Mask is_end = equal(exit & all(3u), all(EXIT_END));
@@ -144,6 +148,15 @@ LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint step
     enter_tets(walk, exit);
 }
 
+// Prefetches what lanes of an image load next. Neighbours often load the same record, so every other pixel will do, as
+// the black fields of a chessboard.
+LANE_FN void prefetch_records(const PacketJob& job, const WalkState& state)
+{
+    for (uint lane = 0; lane < LANES; ++lane)
+        if ((lane % packet_width + lane / packet_width) % 2 == 0)
+            __builtin_prefetch(job.records + state.offsets.of[lane]);
+}
+
 // Walks several packets in rotation until all lanes have ended: while one waits for its records, others compute.
 // steps: the number of tets that the lanes have already left.
 template <int z>
@@ -151,7 +164,7 @@ LANE_FN void walk_on(const PacketJob& job, Packet* packets, Walk<z>* walks, uint
 {
     for (uint i = 0; i < count; ++i) {
         store(walks[i].offsets, walks[i].record * (4 * HALF32_QUADS));
-        prefetch_quads(job.records, walks[i].offsets);
+        prefetch_records(job, walks[i]);
     }
     uint live = every_lane;
     while (live != 0 && steps < job.max_steps) {
@@ -160,7 +173,7 @@ LANE_FN void walk_on(const PacketJob& job, Packet* packets, Walk<z>* walks, uint
         for (uint i = 0; i < count; ++i) {
             if (walks[i].live == 0) continue;
             step<z, false>(job, packets[i], walks[i], steps);
-            prefetch_quads(job.records, walks[i].offsets);
+            prefetch_records(job, walks[i]);
             live |= walks[i].live;
         }
     }
