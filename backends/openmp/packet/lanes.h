@@ -179,9 +179,9 @@ LANE_FN void store(LaneWords& to, Words a)
 {
 #if LANES == 16
     // In halves: a word of a whole vector's upper half, loaded at once, waits much longer for the store.
-    const __m512i words = reinterpret_cast<__m512i>(a);
-    _mm256_store_si256(reinterpret_cast<__m256i*>(to.of), _mm512_castsi512_si256(words));
-    _mm256_store_si256(reinterpret_cast<__m256i*>(to.of + 8), _mm512_extracti64x4_epi64(words, 1));
+    using Half = uint __attribute__((vector_size(2 * LANES)));
+    *reinterpret_cast<Half*>(to.of) = __builtin_shufflevector(a, a, 0, 1, 2, 3, 4, 5, 6, 7);
+    *reinterpret_cast<Half*>(to.of + LANES / 2) = __builtin_shufflevector(a, a, 8, 9, 10, 11, 12, 13, 14, 15);
 #else
     *reinterpret_cast<Words*>(to.of) = a;
 #endif
@@ -284,15 +284,16 @@ LANE_FN Records load_records(const uint* base, const LaneWords& offsets)
     Quad half[2];
     for (uint i = 0; i < 2; ++i) {
         const auto record = [&](uint lane) {
-            return *reinterpret_cast<const Record*>(base + offsets.of[i * (LANES / 2) + lane]);
+            return reinterpret_cast<__m256i>(
+                *reinterpret_cast<const Record*>(base + offsets.of[i * (LANES / 2) + lane]));
         };
 #if LANES == 16
         const auto records = [&](uint lane) {
-            return __builtin_shufflevector(record(lane), record(lane + 4), 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13,
-                                           14, 15);
+            return reinterpret_cast<Words>(
+                _mm512_maskz_inserti64x4(0xFF, _mm512_castsi256_si512(record(lane)), record(lane + 4), 1));
         };
 #else
-        const auto& records = record;
+        const auto records = [&](uint lane) { return reinterpret_cast<Words>(record(lane)); };
 #endif
         half[i] = transposed(records(0), records(1), records(2), records(3));
     }

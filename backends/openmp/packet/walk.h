@@ -77,12 +77,11 @@ LANE_FN Sides sides_of(const Seen& p, const Seen& q)
 }
 
 // Ends lanes whose ray has met a triangle, the domain's boundary or its own end. steps: of the packet so far.
-LANE_FN void end_lanes(Packet& packet, uint lanes, Words exit, Words record, uint steps)
+LANE_FN void end_lanes(Packet& packet, Mask lanes, Words exit, Words record, uint steps)
 {
-    const Mask mask = mask_of(lanes);
-    packet.exit = select(mask, exit, packet.exit);
-    packet.record = select(mask, record, packet.record);
-    packet.steps = select(mask, packet.steps + all(steps), packet.steps);
+    packet.exit = select(lanes, exit, packet.exit);
+    packet.record = select(lanes, record, packet.record);
+    packet.steps = select(lanes, packet.steps + all(steps), packet.steps);
 }
 
 // The lanes that have ended: those of is_end, and those whose ray ends before it enters the tet across the carried
@@ -103,16 +102,17 @@ LANE_FN Words exits_of(WalkState& state, const Mask* replaced, const Words* exit
     const auto turned_by = [&](uint i) { // what place i has: corner (i - rotation) % 3
         return select(once, exits[(i + 2) % 3], select(twice, exits[(i + 1) % 3], exits[i]));
     };
-    const Words exit = select(replaced[1], turned_by(1), select(replaced[2], turned_by(2), turned_by(0)));
+    const Words exit = select(replaced[0], turned_by(0), select(replaced[1], turned_by(1), turned_by(2)));
     const Words turned = state.rotation + (exit & all(3u));
     state.rotation = least(turned, turned - all(3u));
     return exit;
 }
 
-// Lets live lanes enter the tets across their exits; others keep a valid record.
-LANE_FN void enter_tets(WalkState& state, Words exits)
+// Lets lanes enter the tets across their exits: only these live on, and others keep a valid record.
+LANE_FN void go_on(WalkState& state, Mask lanes, Words exits)
 {
-    state.record = select(mask_of(state.live), exits >> 2, state.record);
+    state.live = lanes_of(lanes);
+    state.record = select(lanes, exits >> 2, state.record);
     store(state.offsets, state.record * (4 * HALF32_QUADS));
 }
 
@@ -133,7 +133,7 @@ LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint step
         replace(replaced[i], apex.y, walk.carried[i].y);
     }
     Words exit = exits_of(walk, replaced, at.exits.of);
-    const uint ties = walk.live & lanes_of(s0.tie | s1.tie | s2.tie);
+    const Mask live = mask_of(walk.live), ties = live & (s0.tie | s1.tie | s2.tie), decided = without(live, ties);
     Mask is_end = equal(exit & all(3u), all(EXIT_END));
     if constexpr (has_ends) {
         const Floats depth = depth_at(packet, at.apex.of);
@@ -141,11 +141,10 @@ LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint step
             walk.depths[i] = select(replaced[i], depth, walk.depths[i]);
         is_end = end_across(walk, is_end, exit);
     }
-    const uint ended = walk.live & ~ties & lanes_of(is_end);
-    end_lanes(packet, ended, exit, walk.record, steps); // without a condition: a branch would mostly be mispredicted
-    packet.deferred |= ties;
-    walk.live &= ~(ties | ended);
-    enter_tets(walk, exit);
+    // Without a condition: a branch would mostly be mispredicted.
+    end_lanes(packet, decided & is_end, exit, walk.record, steps);
+    packet.deferred |= lanes_of(ties);
+    go_on(walk, without(decided, is_end), exit);
 }
 
 // Prefetches what lanes of an image load next. Neighbours often load the same record, so every other pixel will do, as
@@ -326,7 +325,7 @@ LANE_FN void leave_first(const PacketJob& job, Packet& packet, Walk<z>& walk, ui
     if (lanes == 0) return;
     const uint exit = exit_through(job, job.start_tet, face);
     if ((exit & 3u) == EXIT_END)
-        end_lanes(packet, lanes, all(exit), all(job.start_tet << 2), 1);
+        end_lanes(packet, mask_of(lanes), all(exit), all(job.start_tet << 2), 1);
     else
         enter_record(job, packet, walk, lanes, exit >> 2);
 }
