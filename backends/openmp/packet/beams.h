@@ -214,8 +214,7 @@ LANE_FN void step(const PacketJob& job, const Eye& eye, BeamWalk& walk)
     const uint ended = going & lanes_of(equal(exits & all(3u), all(EXIT_END)));
     walk.exit = select(mask_of(ended), exits, walk.exit);
     walk.ended |= ended;
-    walk.live = going & ~ended;
-    enter_tets(walk, exits);
+    go_on(walk, mask_of(going & ~ended), exits);
 }
 
 // Sets the lanes to the beams of packets [first, first + LANES) of a block, and returns the mask of those that exist.

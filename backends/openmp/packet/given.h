@@ -179,7 +179,7 @@ LANE_FN void leave_tets(const PacketJob& job, Packet& packet, GivenWalk& walk, u
     }
     const uint ended = leaving & lanes_of(is_end);
     packet.steps = select(mask, all(1u - steps), packet.steps);
-    end_lanes(packet, ended, exit, half_faces, steps);
+    end_lanes(packet, mask_of(ended), exit, half_faces, steps);
     walk.live |= leaving & ~ended;
     walk.rotation = select(mask, exit & 3u, walk.rotation);
     walk.record = select(mask_of(leaving & ~ended), exit >> 2, walk.record);

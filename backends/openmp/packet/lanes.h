@@ -50,21 +50,22 @@ LANE_FN uint lanes_of(Mask a)
 {
     return a.of;
 }
+// By instructions on masks: compilers move masks to integer registers and back for & and |.
 LANE_FN Mask operator&(Mask a, Mask b)
 {
-    return mask_of(lanes_of(a) & lanes_of(b));
+    return {_kand_mask16(a.of, b.of)};
 }
 LANE_FN Mask operator|(Mask a, Mask b)
 {
-    return mask_of(lanes_of(a) | lanes_of(b));
+    return {_kor_mask16(a.of, b.of)};
 }
 LANE_FN Mask without(Mask a, Mask b)
 {
-    return mask_of(lanes_of(a) & ~lanes_of(b));
+    return {_kandn_mask16(b.of, a.of)};
 }
 LANE_FN Mask neither(Mask a, Mask b)
 {
-    return mask_of(~(lanes_of(a) | lanes_of(b)));
+    return {_knot_mask16(_kor_mask16(a.of, b.of))};
 }
 LANE_FN Mask greater(Floats a, Floats b)
 {
@@ -86,6 +87,11 @@ LANE_FN Words select(Mask mask, Words a, Words b)
 {
     return reinterpret_cast<Words>(
         _mm512_mask_blend_epi32(mask.of, reinterpret_cast<__m512i>(b), reinterpret_cast<__m512i>(a)));
+}
+// Replaces lanes of a vector in memory.
+LANE_FN void replace(Mask mask, Floats by, Floats& of)
+{
+    _mm512_mask_store_ps(&of, mask.of, by);
 }
 #else
 using Mask = Words; // all bits of a lane, or none
@@ -116,6 +122,10 @@ LANE_FN Words select(Mask mask, Words a, Words b)
 LANE_FN Floats select(Mask mask, Floats a, Floats b)
 {
     return as_floats(select(mask, as_words(a), as_words(b)));
+}
+LANE_FN void replace(Mask mask, Floats by, Floats& of)
+{
+    of = select(mask, by, of);
 }
 #if LANES == 8
 constexpr Words lane_bits = {1, 2, 4, 8, 16, 32, 64, 128};
@@ -167,7 +177,14 @@ struct LaneWords {
 };
 LANE_FN void store(LaneWords& to, Words a)
 {
+#if LANES == 16
+    // In halves: a word of a whole vector's upper half, loaded at once, waits much longer for the store.
+    using Half = uint __attribute__((vector_size(2 * LANES)));
+    *reinterpret_cast<Half*>(to.of) = __builtin_shufflevector(a, a, 0, 1, 2, 3, 4, 5, 6, 7);
+    *reinterpret_cast<Half*>(to.of + LANES / 2) = __builtin_shufflevector(a, a, 8, 9, 10, 11, 12, 13, 14, 15);
+#else
     *reinterpret_cast<Words*>(to.of) = a;
+#endif
     asm("" : "+m"(to));
 }
 
@@ -267,15 +284,16 @@ LANE_FN Records load_records(const uint* base, const LaneWords& offsets)
     Quad half[2];
     for (uint i = 0; i < 2; ++i) {
         const auto record = [&](uint lane) {
-            return *reinterpret_cast<const Record*>(base + offsets.of[i * (LANES / 2) + lane]);
+            return reinterpret_cast<__m256i>(
+                *reinterpret_cast<const Record*>(base + offsets.of[i * (LANES / 2) + lane]));
         };
 #if LANES == 16
         const auto records = [&](uint lane) {
-            return __builtin_shufflevector(record(lane), record(lane + 4), 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13,
-                                           14, 15);
+            return reinterpret_cast<Words>(
+                _mm512_maskz_inserti64x4(0xFF, _mm512_castsi256_si512(record(lane)), record(lane + 4), 1));
         };
 #else
-        const auto& records = record;
+        const auto records = [&](uint lane) { return reinterpret_cast<Words>(record(lane)); };
 #endif
         half[i] = transposed(records(0), records(1), records(2), records(3));
     }

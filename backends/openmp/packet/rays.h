@@ -243,12 +243,18 @@ LANE_FN void write_words(const PacketJob& job, const Packet& packet, uint lanes,
         store(firsts[i], first.of[i]);
     store(lasts[0], __builtin_shufflevector(hits.of[4], hits.of[5], LOW_WORDS));
     store(lasts[1], __builtin_shufflevector(hits.of[4], hits.of[5], HIGH_WORDS));
-    for (; lanes != 0; lanes &= lanes - 1) {
-        const uint lane = first_of(lanes), quarter = lane & ~3u;
+    const auto write = [&](uint lane) {
+        const uint quarter = lane & ~3u;
         uint* const to = job.hits + HIT_WORDS * std::size_t{packet.numbers.of[lane]};
         __builtin_memcpy(to, &firsts[lane & 3u].of[quarter], 16);
         __builtin_memcpy(to + 4, &lasts[(lane >> 1) & 1u].of[quarter + 2 * (lane & 1u)], 8);
-    }
+    };
+    if (lanes == every_lane)
+        for (uint lane = 0; lane < LANES; ++lane) // unrolled
+            write(lane);
+    else
+        for (; lanes != 0; lanes &= lanes - 1)
+            write(first_of(lanes));
 }
 
 // The hits of lanes whose rays have ended, or are left to the scalar kernel.

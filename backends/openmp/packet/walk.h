@@ -77,12 +77,11 @@ LANE_FN Sides sides_of(const Seen& p, const Seen& q)
 }
 
 // Ends lanes whose ray has met a triangle, the domain's boundary or its own end. steps: of the packet so far.
-LANE_FN void end_lanes(Packet& packet, uint lanes, Words exit, Words record, uint steps)
+LANE_FN void end_lanes(Packet& packet, Mask lanes, Words exit, Words record, uint steps)
 {
-    const Mask mask = mask_of(lanes);
-    packet.exit = select(mask, exit, packet.exit);
-    packet.record = select(mask, record, packet.record);
-    packet.steps = select(mask, packet.steps + all(steps), packet.steps);
+    packet.exit = select(lanes, exit, packet.exit);
+    packet.record = select(lanes, record, packet.record);
+    packet.steps = select(lanes, packet.steps + all(steps), packet.steps);
 }
 
 // The lanes that have ended: those of is_end, and those whose ray ends before it enters the tet across the carried
@@ -99,18 +98,21 @@ LANE_FN Mask end_across(const Walk<z>& walk, Mask is_end, Words& exit)
 // The exits of lanes. replaced: masks of the lanes in which the apex replaces each carried vertex.
 LANE_FN Words exits_of(WalkState& state, const Mask* replaced, const Words* exits)
 {
-    const Words place = select(replaced[1], all(1u), select(replaced[2], all(2u), Words{})) - state.rotation;
-    const Words index = least(place, place + all(3u)); // of the corner; a value below 0 wraps to a large number
-    const Words exit = select(equal(index, all(1u)), exits[1], select(equal(index, all(2u)), exits[2], exits[0]));
+    const Mask once = equal(state.rotation, all(1u)), twice = equal(state.rotation, all(2u));
+    const auto turned_by = [&](uint i) { // what place i has: corner (i - rotation) % 3
+        return select(once, exits[(i + 2) % 3], select(twice, exits[(i + 1) % 3], exits[i]));
+    };
+    const Words exit = select(replaced[0], turned_by(0), select(replaced[1], turned_by(1), turned_by(2)));
     const Words turned = state.rotation + (exit & all(3u));
     state.rotation = least(turned, turned - all(3u));
     return exit;
 }
 
-// Lets live lanes enter the tets across their exits; others keep a valid record.
-LANE_FN void enter_tets(WalkState& state, Words exits)
+// Lets lanes enter the tets across their exits: only these live on, and others keep a valid record.
+LANE_FN void go_on(WalkState& state, Mask lanes, Words exits)
 {
-    state.record = select(mask_of(state.live), exits >> 2, state.record);
+    state.live = lanes_of(lanes);
+    state.record = select(lanes, exits >> 2, state.record);
     store(state.offsets, state.record * (4 * HALF32_QUADS));
 }
 
@@ -126,10 +128,12 @@ LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint step
     // half-faces cause; both functions then replace the third vertex.
     const Mask first = without(s2.left, s1.left), second = without(s0.left, s2.left);
     const Mask replaced[3] = {first, second, neither(first, second)};
-    for (uint i = 0; i < 3; ++i)
-        walk.carried[i] = select(replaced[i], apex, walk.carried[i]);
+    for (uint i = 0; i < 3; ++i) {
+        replace(replaced[i], apex.x, walk.carried[i].x);
+        replace(replaced[i], apex.y, walk.carried[i].y);
+    }
     Words exit = exits_of(walk, replaced, at.exits.of);
-    const uint ties = walk.live & lanes_of(s0.tie | s1.tie | s2.tie);
+    const Mask live = mask_of(walk.live), ties = live & (s0.tie | s1.tie | s2.tie), decided = without(live, ties);
     Mask is_end = equal(exit & all(3u), all(EXIT_END));
     if constexpr (has_ends) {
         const Floats depth = depth_at(packet, at.apex.of);
@@ -137,11 +141,19 @@ LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint step
             walk.depths[i] = select(replaced[i], depth, walk.depths[i]);
         is_end = end_across(walk, is_end, exit);
     }
-    const uint ended = walk.live & ~ties & lanes_of(is_end);
-    end_lanes(packet, ended, exit, walk.record, steps); // without a condition: a branch would mostly be mispredicted
-    packet.deferred |= ties;
-    walk.live &= ~(ties | ended);
-    enter_tets(walk, exit);
+    // Without a condition: a branch would mostly be mispredicted.
+    end_lanes(packet, decided & is_end, exit, walk.record, steps);
+    packet.deferred |= lanes_of(ties);
+    go_on(walk, without(decided, is_end), exit);
+}
+
+// Prefetches what lanes of an image load next. Neighbours often load the same record, so every other pixel will do, as
+// the black fields of a chessboard.
+LANE_FN void prefetch_records(const PacketJob& job, const WalkState& state)
+{
+    for (uint lane = 0; lane < LANES; ++lane)
+        if ((lane % packet_width + lane / packet_width) % 2 == 0)
+            __builtin_prefetch(job.records + state.offsets.of[lane]);
 }
 
 // Walks several packets in rotation until all lanes have ended: while one waits for its records, others compute.
@@ -151,7 +163,7 @@ LANE_FN void walk_on(const PacketJob& job, Packet* packets, Walk<z>* walks, uint
 {
     for (uint i = 0; i < count; ++i) {
         store(walks[i].offsets, walks[i].record * (4 * HALF32_QUADS));
-        prefetch_quads(job.records, walks[i].offsets);
+        prefetch_records(job, walks[i]);
     }
     uint live = every_lane;
     while (live != 0 && steps < job.max_steps) {
@@ -160,7 +172,7 @@ LANE_FN void walk_on(const PacketJob& job, Packet* packets, Walk<z>* walks, uint
         for (uint i = 0; i < count; ++i) {
             if (walks[i].live == 0) continue;
             step<z, false>(job, packets[i], walks[i], steps);
-            prefetch_quads(job.records, walks[i].offsets);
+            prefetch_records(job, walks[i]);
             live |= walks[i].live;
         }
     }
@@ -313,7 +325,7 @@ LANE_FN void leave_first(const PacketJob& job, Packet& packet, Walk<z>& walk, ui
     if (lanes == 0) return;
     const uint exit = exit_through(job, job.start_tet, face);
     if ((exit & 3u) == EXIT_END)
-        end_lanes(packet, lanes, all(exit), all(job.start_tet << 2), 1);
+        end_lanes(packet, mask_of(lanes), all(exit), all(job.start_tet << 2), 1);
     else
         enter_record(job, packet, walk, lanes, exit >> 2);
 }
