@@ -40,7 +40,7 @@ private:
 [[nodiscard]] std::filesystem::path cache_directory();
 
 /// A part of the key of tets for rays: raised where the optimiser makes others of the same mesh.
-inline constexpr std::uint32_t optimiser_version = 3;
+inline constexpr std::uint32_t optimiser_version = 4;
 
 /// The file of the scene that is built from a mesh with these options: `<label>-<16 digits>.tet`. The digits are a hash
 /// of the mesh's bytes (mesh_hash), of the options that decide the tets, of scene_file_version, and of

@@ -35,9 +35,9 @@ constexpr const char* tool_1 = "tetrace-builder 0.1.0, TetGen 1.5.0, CGAL 5.5.1"
 std::span<const PinnedScene> pinned_scenes()
 {
     static const std::array<PinnedScene, 3> scenes = {{
-        {"bunny-1", "bunny", 0x78924a553c61dc43, 0xb549bf42bca0e25c, 0x02e9d84d743616a3, 0x37628cf5dd37d8c1, 3, tool_1,
+        {"bunny-1", "bunny", 0x78924a553c61dc43, 0xb549bf42bca0e25c, 0x02e9d84d743616a3, 0x37628cf5dd37d8c1, 4, tool_1,
          41.308799301776602, 14.504171213204627, bytes_between(stored_bunny_1, stored_end_bunny_1)},
-        {"armadillo-1", "armadillo", 0xcfd9a20c2f3456b8, 0xe7858ea90dc957f8, 0xfb7915c52b00caa0, 0x6200f9bf329e150e, 3,
+        {"armadillo-1", "armadillo", 0xcfd9a20c2f3456b8, 0xe7858ea90dc957f8, 0xfb7915c52b00caa0, 0x6200f9bf329e150e, 4,
          tool_1, 41.852296584244129, 15.106004767161773, bytes_between(stored_armadillo_1, stored_end_armadillo_1)},
         {"atrium-1", "atrium", 0x38cdffb476727d79, 0x6b422b1a4e4bdad3, 0x26606013fe03f4f9, 0x48e31d41dc59126f, 3,
          tool_1, 92.696192842220398, 42.546285487618633, bytes_between(stored_atrium_1, stored_end_atrium_1)},

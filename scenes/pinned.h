@@ -16,7 +16,7 @@ struct PinnedScene {
     std::uint64_t mesh_hash;    ///< mesh_hash() of its triangles
     std::uint64_t scene_hash;   ///< scene_hash(): mesh, tets and domain
     std::uint64_t cameras_hash; ///< hash_of_cameras() of the camera set `frame`
-    std::uint32_t optimiser;    ///< the optimiser_version that made its tets
+    std::uint32_t optimiser;    ///< the last optimiser_version that makes its tets
     std::string_view tool;      ///< that made them, as BuildInfo::tool
     double cost_before, cost_after;
     std::span<const std::byte> tets; ///< see scenes/stored_tets.h

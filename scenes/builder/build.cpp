@@ -80,6 +80,25 @@ Placement place(TriangleMesh& mesh, DomainKind kind)
     return placement;
 }
 
+std::size_t count_pieces(const TriangleMesh& mesh)
+{
+    std::vector<std::uint32_t> towards(mesh.vertices.size()); // another vertex of the piece, or itself
+    std::iota(towards.begin(), towards.end(), 0u);
+    const auto end_of = [&](std::uint32_t vertex) {
+        while (towards[vertex] != vertex)
+            vertex = towards[vertex] = towards[towards[vertex]];
+        return vertex;
+    };
+    for (const auto& [a, b, c] : mesh.triangles) {
+        towards[end_of(b)] = end_of(a);
+        towards[end_of(c)] = end_of(a);
+    }
+    std::vector<bool> is_piece(mesh.vertices.size());
+    for (const auto& triangle : mesh.triangles)
+        is_piece[end_of(triangle[0])] = true;
+    return static_cast<std::size_t>(std::count(is_piece.begin(), is_piece.end(), true));
+}
+
 namespace {
 
 using Kind = TetMeshDefect::Kind;
@@ -349,6 +368,9 @@ PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& ta
     scene.build.optimised.asked = options.tets;
     if (options.mesh_only) return prepared;
     prepared.limits = {options.tets == TetsKind::rays ? options.effort : 0, options.optimise_for_s};
+    prepared.limits.several_pieces = prepared.limits.effort > 0 && count_pieces(scene.mesh) > 1;
+    if (prepared.limits.several_pieces) // more vertices on the sides to begin with
+        prepared.surface = domain_surface(make_domain(scene.mesh, options.domain, 2 * options.divisions));
     if (prepared.limits.effort > 0 && options.switches.find('q') == std::string::npos)
         prepared.points = graded_points(scene.mesh, scene.domain);
     return prepared;

@@ -28,6 +28,9 @@ struct Placement {
 /// grid of core/base/exact.h. No translation. The mesh has at least one vertex, all finite.
 Placement place(TriangleMesh& mesh, DomainKind kind);
 
+/// The number of pieces of a mesh: triangles with a common vertex are in the same one.
+[[nodiscard]] std::size_t count_pieces(const TriangleMesh& mesh);
+
 /// What the command line asks for.
 struct BuilderOptions {
     std::filesystem::path mesh, out;

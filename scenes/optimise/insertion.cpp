@@ -10,6 +10,9 @@ namespace {
 
 constexpr std::size_t max_ring = 24, max_in_cavity = 48;
 constexpr int steps_past_best = 8, regrowths = 2, insertion_halvings = 5;
+// What a try may lose, as parts of the free area inside the cavity, and still end well: before the vertex has moved,
+// and after.
+constexpr double max_loss_unmoved = 0.3, max_loss_moved = 0.15;
 
 } // namespace
 
@@ -178,19 +181,31 @@ Double3 Insertion::better_point(Double3 at) const
     return at;
 }
 
+double Insertion::ring_area() const
+{
+    double sum = 0;
+    for (const std::uint32_t v : ring_.vertices)
+        sum += area(mesh_.point(ring_.a), mesh_.point(ring_.b), mesh_.point(v));
+    return sum;
+}
+
 double Insertion::try_edge(std::uint32_t tet, std::uint32_t edge, double least)
 {
     if (!find_ring(mesh_, tet, edge, max_ring, since, ring_)) return 0;
     sides_ = ring_.is_open() ? mesh_.box_sides(ring_.a) & mesh_.box_sides(ring_.b) : 0;
     if (ring_.is_open() && sides_ == 0) return 0; // the domain is not a box
+    if (ring_area() < min_ring_area) return 0;
     Double3 at = rounded_point((mesh_.point(ring_.a) + mesh_.point(ring_.b)) * 0.5);
     cavity_ = ring_.tets;
     double gain = 0;
     for (int i = 0; i <= regrowths; ++i) {
-        if (grow(at) == impossible) return 0;
+        const double loss = grow(at);
+        if (loss == impossible) return 0;
         find_outside();
+        if (loss + least > max_loss_unmoved * inside_area_) return 0;
         at = better_point(at);
         gain = inside_area_ - outside_.cost(mesh_, at);
+        if (least - gain > max_loss_moved * inside_area_) return 0;
     }
     if (gain <= least + min_share * inside_area_ || !may_be_at(at)) return 0;
     const std::uint32_t vertex = mesh_.add_vertex(at, sides_);

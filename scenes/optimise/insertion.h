@@ -17,7 +17,8 @@ public:
     /// min_share of the area of the free faces in the cavity.
     double try_edge(std::uint32_t tet, std::uint32_t edge, double least);
 
-    std::uint32_t since = 1; ///< as in EdgeRemoval
+    std::uint32_t since = 1;  ///< as in EdgeRemoval
+    double min_ring_area = 0; ///< of the faces around an edge, for it to be tried: small ones gain little
 
     static constexpr double min_share = 1e-3;
 
@@ -36,6 +37,7 @@ private:
     void join(Double3 at, std::uint32_t tet);
     [[nodiscard]] double grow(Double3 at);
     void find_outside();
+    [[nodiscard]] double ring_area() const;
     [[nodiscard]] bool may_be_at(Double3 at) const;
     [[nodiscard]] Double3 better_point(Double3 at) const;
 

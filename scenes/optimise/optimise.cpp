@@ -3,6 +3,7 @@
 #include "core/base/stopwatch.h"
 #include "scenes/optimise/region_pass.h"
 #include "scenes/optimise/regions.h"
+#include "scenes/optimise/shape.h"
 
 #include <fmt/format.h>
 #include <omp.h>
@@ -49,14 +50,22 @@ double Forecast::left_s(double elapsed_s, double share_of_round, double enough, 
 
 namespace {
 
-// Rounds end when one lowers the cost by less than this part of it.
+// Rounds end when one lowers the cost by less than `share` of it. Vertices are inserted at edges whose faces have at
+// least `min_ring` times the mean area of a free face.
 struct Effort {
     std::uint32_t max_rounds;
-    double share;
-    bool inserts;
+    double share, min_ring;
 };
 constexpr std::array<Effort, max_effort + 1> efforts = {
-    {{0, 1, false}, {2, 0.05, false}, {16, 0.003, false}, {40, 0.001, true}}};
+    {{0, 1, impossible}, {2, 0.05, impossible}, {16, 0.003, impossible}, {40, 0.001, 0}}};
+constexpr Effort effort_for_pieces = {16, 0.003, 8};
+
+Effort effort_of(const OptimiserLimits& limits)
+{
+    const int effort = std::clamp(limits.effort, 0, max_effort);
+    return limits.several_pieces && effort == 2 ? effort_for_pieces : efforts[static_cast<std::size_t>(effort)];
+}
+
 constexpr double negligible = 1e-12; // a gain, as a part of the boundary's area
 constexpr std::size_t no_regions = std::numeric_limits<std::size_t>::max();
 constexpr double share_of_regions = 0.7; // of a round's time; the rest is for what walls kept from being done
@@ -64,9 +73,8 @@ constexpr double share_of_regions = 0.7; // of a round's time; the rest is for w
 class Optimiser {
 public:
     Optimiser(const TetMesh& mesh, const OptimiserLimits& limits, const Progress& progress)
-        : limits_(limits), effort_(efforts[static_cast<std::size_t>(std::clamp(limits.effort, 0, max_effort))]),
-          progress_(progress), given_(mesh), mesh_(arrays_of(mesh)), per_area_(2 / boundary_area(mesh_)),
-          least_(negligible / per_area_)
+        : limits_(limits), effort_(effort_of(limits)), progress_(progress), given_(mesh), mesh_(arrays_of(mesh)),
+          per_area_(2 / boundary_area(mesh_)), least_(negligible / per_area_)
     {
         report_.operations = {{{"edges removed"}, {"faces removed"}, {"moves"}, {"collapses"}, {"insertions"}}};
         report_.cost_before = cost_ = free_area(mesh_) * per_area_;
@@ -94,6 +102,7 @@ private:
     [[nodiscard]] bool ends_early() const { return report_.end != OptimiserEnd::finished; }
     [[nodiscard]] bool go_on(double share_of_region);
     void tell(double share_of_round) const;
+    [[nodiscard]] double mean_free_area() const;
 
     OptimiserLimits limits_;
     Effort effort_;
@@ -106,6 +115,7 @@ private:
     double least_;
     OptimiserReport report_;
     double cost_ = 0;
+    double min_ring_area_ = 0;           ///< of this round
     std::uint32_t mark_ = 1, since_ = 1; ///< of this pass: EditableMesh::round, and the first one that is new
     std::uint32_t round_began_ = 1;      ///< the first mark of the last round
     std::vector<std::array<OperationTally, operation_count>> tallies_; ///< of this pass, per region
@@ -143,7 +153,7 @@ void Optimiser::work_on(const Regions& regions, std::size_t index, Region& regio
 {
     region = regions.cut(index, since_, mark_ + 1, scratch);
     RegionPass pass(std::move(region.mesh),
-                    {since_, mark_, least_, effort_.inserts, [this](double share) { return go_on(share); }});
+                    {since_, mark_, least_, min_ring_area_, [this](double share) { return go_on(share); }});
     region.mesh = pass.run();
     tallies_[index] = pass.tallies();
     const std::lock_guard lock(looking_);
@@ -192,10 +202,18 @@ std::size_t Optimiser::pass(std::uint32_t since, std::size_t max_tets)
     return regions.size();
 }
 
+// A tet has about two free faces of its own.
+double Optimiser::mean_free_area() const
+{
+    const auto reached = std::count(mesh_.states.begin(), mesh_.states.end(), TetState::reached);
+    return cost_ / per_area_ / (2 * static_cast<double>(std::max<std::ptrdiff_t>(reached, 1)));
+}
+
 // All regions at once, then, in the whole mesh, what their walls kept from being looked at.
 double Optimiser::round()
 {
     const double before = cost_;
+    min_ring_area_ = effort_.min_ring < impossible ? effort_.min_ring * mean_free_area() : impossible;
     ++report_.rounds;
     const std::uint32_t since = std::exchange(round_began_, mark_ + 1);
     const std::size_t regions = pass(since, limits_.tets_per_region);

@@ -36,6 +36,7 @@ struct OptimiserLimits {
     const std::atomic<bool>* stop = nullptr; ///< it ends after the current operation where this becomes true
     int threads = 0;                         ///< 0: as many as OpenMP has. The result does not depend on it
     std::size_t tets_per_region = 12288; ///< at most (docs/spec/rays-tets.md, In parallel); the result depends on it
+    bool several_pieces = false;         ///< of the mesh (count_pieces()): then vertices are inserted with effort 2 too
 };
 
 /// What an operation did.

@@ -17,6 +17,7 @@ RegionPass::RegionPass(MeshArrays arrays, const Orders& orders)
 {
     mesh_.round = orders.mark;
     insertion_.since = orders.since;
+    insertion_.min_ring_area = orders.min_ring_area;
 }
 
 bool RegionPass::is_new_tet(std::uint32_t tet) const
@@ -45,7 +46,7 @@ void RegionPass::sweep(Operation operation, std::uint32_t count, const Try& try_
     OperationTally& tally = tallies_[operation];
     for (std::uint32_t i = 0; i < count && !ended_; ++i) {
         if (i % tries_between_looks == 0)
-            ended_ = !orders_.go_on((sweeps_ + static_cast<double>(i) / count) / (orders_.inserts ? 7 : 6));
+            ended_ = !orders_.go_on((sweeps_ + static_cast<double>(i) / count) / (inserts() ? 7 : 6));
         const double gain = ended_ ? 0 : try_one(i);
         if (gain <= 0) continue;
         ++tally.done;
@@ -75,7 +76,7 @@ MeshArrays RegionPass::run()
           [&](std::uint32_t v) { return is_new_vertex(v) ? collapse_.try_vertex(v, orders_.least) : 0.0; });
     sweep(move_vertices, mesh_.vertex_slots(),
           [&](std::uint32_t v) { return is_new_vertex(v) ? try_move(mesh_, v, orders_.least, star_) : 0.0; });
-    if (orders_.inserts)
+    if (inserts())
         sweep(insert_vertices, mesh_.tet_slots() * 6, [&](std::uint32_t i) {
             return is_new_tet(i / 6) ? insertion_.try_edge(i / 6, i % 6, orders_.least) : 0.0;
         });

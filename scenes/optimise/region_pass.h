@@ -3,6 +3,7 @@
 #include "scenes/optimise/collapse.h"
 #include "scenes/optimise/edge_removal.h"
 #include "scenes/optimise/insertion.h"
+#include "scenes/optimise/shape.h"
 
 #include <array>
 #include <cstdint>
@@ -28,7 +29,7 @@ public:
         std::uint32_t since;                     ///< only what was marked with it or later is looked at
         std::uint32_t mark;                      ///< for what changes (EditableMesh::round); more than `since`
         double least;                            ///< gain, an area
-        bool inserts;                            ///< at the end
+        double min_ring_area;                    ///< of Insertion, at the end; `impossible`: nothing is inserted
         std::function<bool(double share)> go_on; ///< asked now and then, with the share that is done
     };
 
@@ -43,6 +44,7 @@ private:
     template <class Try>
     void sweep(Operation operation, std::uint32_t count, const Try& try_one);
     void flip(std::uint32_t since);
+    [[nodiscard]] bool inserts() const { return orders_.min_ring_area < impossible; }
     [[nodiscard]] bool is_new_tet(std::uint32_t tet) const;
     [[nodiscard]] bool is_new_face(std::uint32_t tet, std::uint32_t face) const;
     [[nodiscard]] bool is_new_vertex(std::uint32_t vertex) const;

@@ -363,6 +363,22 @@ TEST_F(OptimisingBuilder, betters_hostile_meshes)
         }
 }
 
+TEST_F(OptimisingBuilder, inserts_vertices_for_several_pieces_and_begins_with_more_on_the_sides)
+{
+    const TriangleMesh pair = joined(sphere(2), sphere(2), 0.5f, 3);
+    for (const auto& [mesh, pieces] : {std::pair{sphere(2), 1U}, std::pair{pair, 2U}}) {
+        EXPECT_EQ(count_pieces(mesh), pieces);
+        BuilderOptions asked = options(mesh, DomainKind::tight, "pY");
+        asked.tets = TetsKind::rays;
+        const PreparedScene prepared = prepare_scene(asked, silence());
+        EXPECT_EQ(prepared.surface.triangles.size(),
+                  pieces * pieces * domain_surface(prepared.scene.domain).triangles.size());
+        const Scene scene = expect_optimised(mesh, DomainKind::tight, "pY");
+        EXPECT_EQ(scene.build.optimised.operations.back().done > 0, pieces > 1);
+        EXPECT_EQ(scene.domain.divisions, 8U) << "that rays look up";
+    }
+}
+
 TEST_F(Builder, keeps_tetgens_tets_where_the_optimised_ones_fail_a_check)
 {
     const Scene scene = build(options(sphere(2), DomainKind::tight, "pq5Y"));

@@ -275,3 +275,22 @@ TEST(Insertion, lowers_the_cost_by_what_it_says)
     EXPECT_GT(inserted, 10);
     expect_same_domain(mesh.take(), cubes());
 }
+
+TEST(Insertion, is_tried_only_at_edges_whose_faces_are_large_enough)
+{
+    EditableMesh mesh(cubes().tets);
+    Insertion insertion(mesh);
+    EdgeRing ring;
+    for (std::uint32_t edge = 0; edge < 6; ++edge) {
+        if (!mesh.is_reached(0) || !find_ring(mesh, 0, edge, 24, from_any_tet, ring)) continue;
+        double around = 0;
+        for (const std::uint32_t v : ring.vertices)
+            around += area(mesh.point(ring.a), mesh.point(ring.b), mesh.point(v));
+        insertion.since = from_any_tet;
+        insertion.min_ring_area = 1.001 * around;
+        EXPECT_EQ(insertion.try_edge(0, edge, anything), 0);
+        insertion.min_ring_area = 0.999 * around;
+        if (insertion.try_edge(0, edge, anything) != 0) return;
+    }
+    FAIL() << "nothing was inserted";
+}

@@ -71,6 +71,22 @@ TEST(Optimise, reports_gains_that_add_up)
     EXPECT_EQ(report.end, OptimiserEnd::finished);
 }
 
+TEST(Optimise, inserts_vertices_for_several_pieces_unless_effort_is_least)
+{
+    const TetMesh mesh = make_cubes(8).tets;
+    for (const int effort : {1, 2}) {
+        OptimiserLimits limits{effort, 0};
+        const OptimiserReport one = optimise(mesh, limits, {}).report;
+        limits.several_pieces = true;
+        const OptimiserReport several = optimise(mesh, limits, {}).report;
+        EXPECT_EQ(one.operations.back().done, 0U);
+        EXPECT_EQ(several.operations.back().done > 0, effort == 2);
+        EXPECT_EQ(several.operations.back().gain > 0, effort == 2);
+        EXPECT_EQ(several.cost_after == one.cost_after, effort == 1);
+        EXPECT_LE(several.cost_after, 1.02 * one.cost_after);
+    }
+}
+
 TEST(Optimise, gives_the_same_bits_each_time)
 {
     const Scene scene = make_cubes(6);

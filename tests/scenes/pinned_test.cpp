@@ -62,7 +62,9 @@ TEST_F(PinnedScenes, are_joined_from_mesh_and_stored_tets_if_building_fails)
         EXPECT_EQ(made.scene.build.build_s, 0) << "its tets were not made here";
         ASSERT_FALSE(made.messages.empty());
         EXPECT_TRUE(contains(made.messages.back(), "the tets are those of " + name + " that tetrace stores"));
-        EXPECT_TRUE(contains(made.messages.at(made.messages.size() - 2), "is not made here: making them here failed"));
+        EXPECT_TRUE(contains(made.messages.at(made.messages.size() - 2),
+                             pinned.optimiser == optimiser_version ? "is not made here: making them here failed"
+                                                                   : "is not made here: another optimiser made them"));
         const LoadedScene again = load(name);
         EXPECT_TRUE(again.from_cache);
         EXPECT_EQ(again.hash, pinned.scene_hash);
