@@ -56,6 +56,8 @@ struct ReportInput {
 [[nodiscard]] Section
 compiler_section(const ReportInput& input);                    ///< what compilers reported to `inspect` for each kernel
 [[nodiscard]] Section rate_section(const ReportInput& input);  ///< bars per scene, and rows without a rate
+[[nodiscard]] Section size_section(const ReportInput& input);  ///< rates by size, of `bench` with several sizes
+[[nodiscard]] Section thread_section(const ReportInput& input); ///< the same of threads
 [[nodiscard]] Section ratio_section(const ReportInput& input); ///< APIs compared with each other
 [[nodiscard]] Section roofline_section(const ReportInput& input); ///< every device with its rows
 [[nodiscard]] Section time_section(const ReportInput& input);     ///< where each row's time goes
