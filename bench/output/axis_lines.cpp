@@ -128,18 +128,18 @@ std::vector<AxisLine> thread_lines(const BenchResult& result)
 
 Table size_table(const std::vector<AxisLine>& lines)
 {
-    return axis_table(lines, {{"launch_us", "a launch", "us"}, {"mray_us", "a million rays", "us", 1}},
+    return axis_table(lines, {{"launch_us", "a launch", "us"}, {"mray_ms", "a million rays", "ms", 3}},
                       [](const AxisLine& line) {
                           const LaunchLine cost = launch_line(line.last().per_mray, line.first().per_mray, 1);
                           return std::vector<Cell>{cost.fixed_s ? Cell(1e6 * *cost.fixed_s) : Cell(),
-                                                   1e6 * cost.s_per_unit};
+                                                   1e3 * cost.s_per_unit};
                       });
 }
 
 Table thread_table(const std::vector<AxisLine>& lines)
 {
-    return axis_table(lines, {{"of_ideal", "of ideal"}}, [](const AxisLine& line) {
-        return std::vector<Cell>{fmt::format("{:.0f} %", 100 * line.efficiency())};
+    return axis_table(lines, {{"of_ideal", "of ideal", "%", 0}}, [](const AxisLine& line) {
+        return std::vector<Cell>{100 * line.efficiency()};
     });
 }
 

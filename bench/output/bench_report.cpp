@@ -111,7 +111,7 @@ std::string visits_sentences(const std::string& scene, const std::vector<RowReco
     std::string text;
     for (const RowRecord* row : rows_of(scene, rows)) {
         const Traced* result = traced(*row);
-        if (result == nullptr || result->visits.rays == 0) continue;
+        if (result == nullptr || result->visits.rays == 0 || row->key.threads != 0) continue;
         const auto rays = static_cast<double>(result->visits.rays);
         append_item(text, "; ",
                     fmt::format("{}: {:.1f} nodes and {:.1f} triangles per ray", kernel_title(row->key),

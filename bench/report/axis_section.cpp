@@ -93,7 +93,7 @@ Html size_chart(const std::string& title, const std::vector<AxisLine>& lines)
 /// Relative to a row's fewest threads, so that one ideal line is that of all.
 Html thread_chart(const std::string& title, const std::vector<AxisLine>& lines)
 {
-    LineChart chart{"Speed-up by threads: " + title, "threads", "rate over that of one thread, if the first is ideal",
+    LineChart chart{"Speed-up by threads: " + title, "threads", "speed-up, if that of the fewest threads is ideal",
                     series_of(drawn(lines), [](const AxisLine& line, const AxisRate& rate) {
                         return rate.mrays_per_s / line.first().mrays_per_s *
                                static_cast<double>(line.rates.begin()->first.number);
