@@ -36,8 +36,8 @@ void set_verdict(nlohmann::json& section, const std::optional<CheckVerdict>& ver
 /// The line of a result's verdict; nothing for a result without.
 [[nodiscard]] Sheet verdict_line(const ResultValue& section);
 
-/// In a result, under "expectations": the files that count, what is not simply as it should be, the implementations that
-/// no file mentions, and sentences on what files say of rows and items that the run cannot have.
+/// In a result, under "expectations": the files that count, what is not simply as it should be, the implementations
+/// that no file mentions, and sentences on what files say of rows and items that the run cannot have.
 void set_expectations(nlohmann::json& section, const Expectations& expectations,
                       const std::vector<Deviation>& deviations, const std::vector<std::string>& unmentioned,
                       const std::vector<std::string>& unknown = {});

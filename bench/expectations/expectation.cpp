@@ -112,8 +112,7 @@ std::set<std::string> names_on(const Backend& backend)
             if (!backend.has_kernel(kernel)) continue;
             for (const RayOrder ray_order : values_of<RayOrder>())
                 for (const TetOrder order : values_of<TetOrder>())
-                    names.insert(expected_name(
-                        {{}, {}, kernel, kind, order, 0, 0, ray_order}));
+                    names.insert(expected_name({{}, {}, kernel, kind, order, 0, 0, ray_order}));
         }
     return names;
 }

@@ -95,8 +95,8 @@ void add_missing_self_test(JudgedDevice& device, const Expectations* expectation
 {
     const Expectation* const expectation = find_in(expectations, device.implementation);
     if (expectation == nullptr || expectation->self_test.empty() || device.has_self_test) return;
-    device.unknown.push_back(fmt::format("{}: self_test: no row of this run on {} has one in exact mode",
-                                         expectation->file, device.label));
+    device.unknown.push_back(
+        fmt::format("{}: self_test: no row of this run on {} has one in exact mode", expectation->file, device.label));
 }
 
 void judge_self_test(JudgedDevice& device, const RowRecord& row, const Expectation* expectation)

@@ -128,19 +128,17 @@ std::vector<AxisLine> thread_lines(const BenchResult& result)
 
 Table size_table(const std::vector<AxisLine>& lines)
 {
-    return axis_table(lines, {{"launch_us", "a launch", "us"}, {"mray_ms", "a million rays", "ms", 3}},
-                      [](const AxisLine& line) {
-                          const LaunchLine cost = launch_line(line.last().per_mray, line.first().per_mray, 1);
-                          return std::vector<Cell>{cost.fixed_s ? Cell(1e6 * *cost.fixed_s) : Cell(),
-                                                   1e3 * cost.s_per_unit};
-                      });
+    return axis_table(
+        lines, {{"launch_us", "a launch", "us"}, {"mray_ms", "a million rays", "ms", 3}}, [](const AxisLine& line) {
+            const LaunchLine cost = launch_line(line.last().per_mray, line.first().per_mray, 1);
+            return std::vector<Cell>{cost.fixed_s ? Cell(1e6 * *cost.fixed_s) : Cell(), 1e3 * cost.s_per_unit};
+        });
 }
 
 Table thread_table(const std::vector<AxisLine>& lines)
 {
-    return axis_table(lines, {{"of_ideal", "of ideal", "%", 0}}, [](const AxisLine& line) {
-        return std::vector<Cell>{100 * line.efficiency()};
-    });
+    return axis_table(lines, {{"of_ideal", "of ideal", "%", 0}},
+                      [](const AxisLine& line) { return std::vector<Cell>{100 * line.efficiency()}; });
 }
 
 } // namespace tetrace

@@ -231,9 +231,10 @@ std::string scene_headline(const ResultValue& scene)
     const auto bvh = scene.find("bvh_build_s");
     const auto built = scene.find("build_s");
     const std::string name = scene.at("name").line(), pinned = text_of("pinned");
-    return fmt::format("{}: {} tets, {} occlusive + {} free faces, {}{} ({}){}\n", pinned.empty() ? name : pinned + size_in(name),
-                       with_commas(scene.at("tets").count()), with_commas(scene.at("occlusive_faces").count()),
-                       with_commas(scene.at("free_faces").count()), size ? size_text(size->count()) + ", " : "",
+    return fmt::format("{}: {} tets, {} occlusive + {} free faces, {}{} ({}){}\n",
+                       pinned.empty() ? name : pinned + size_in(name), with_commas(scene.at("tets").count()),
+                       with_commas(scene.at("occlusive_faces").count()), with_commas(scene.at("free_faces").count()),
+                       size ? size_text(size->count()) + ", " : "",
                        built ? "built in " + seconds_text(built->number()) : "stored", how,
                        bvh ? fmt::format(", its BVH in {}", seconds_text(bvh->number())) : "");
 }

@@ -42,9 +42,8 @@ std::vector<Unanswered> all_unanswered(const std::vector<RowRecord>& rows)
     for (const RowRecord& row : rows) {
         if (has_answers(row)) continue;
         Unanswered one = unanswered(row);
-        const auto same = std::ranges::find_if(groups, [&](const Unanswered& group) {
-            return group.status == one.status && group.common == one.common;
-        });
+        const auto same = std::ranges::find_if(
+            groups, [&](const Unanswered& group) { return group.status == one.status && group.common == one.common; });
         Unanswered& group = same == groups.end() ? groups.emplace_back(std::move(one)) : *same;
         ++group.count;
         group.of_one_scene = group.of_one_scene && group.first->key.scene == row.key.scene;
@@ -55,7 +54,8 @@ std::vector<Unanswered> all_unanswered(const std::vector<RowRecord>& rows)
 /// Names the row, or the first of several.
 std::string whole_line(const Unanswered& group)
 {
-    const std::string name = row_name(group.first->key), what = fmt::format("{}: {}", name_of(group.status), group.what);
+    const std::string name = row_name(group.first->key),
+                      what = fmt::format("{}: {}", name_of(group.status), group.what);
     if (group.count == 1) return fmt::format("{}: {}", name, what);
     const bool tells_scene = group.of_one_scene && group.common == group.what;
     return fmt::format("{} rows{}, such as {}: {}", group.count, tells_scene ? " of " + group.first->key.scene : "",
@@ -80,9 +80,8 @@ std::string common_line(const std::vector<Unanswered>& groups)
 Sheet failure_lines(const std::vector<RowRecord>& rows)
 {
     auto groups = all_unanswered(rows);
-    const auto idle = std::stable_partition(groups.begin(), groups.end(), [](const Unanswered& group) {
-        return group.is_fault();
-    });
+    const auto idle =
+        std::stable_partition(groups.begin(), groups.end(), [](const Unanswered& group) { return group.is_fault(); });
     const std::vector<Unanswered> idle_groups(idle, groups.end());
     groups.erase(idle, groups.end());
     Sheet sheet;

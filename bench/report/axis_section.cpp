@@ -12,11 +12,13 @@ namespace tetrace {
 namespace {
 
 const char* const how_to_read_sizes =
-    "Each row at each size of --size. A launch and a million rays: the line through the medians of the smallest and the "
+    "Each row at each size of --size. A launch and a million rays: the line through the medians of the smallest and "
+    "the "
     "largest size, time = launches x a launch + rays x a ray; without the cost of a launch if the samples do not show "
     "it. Rays of larger images are closer to each other, which makes them faster, too.";
 const char* const how_to_read_threads =
-    "Each row of a processor with each number of --threads. Of ideal: the speed-up from the fewest to the most threads, "
+    "Each row of a processor with each number of --threads. Of ideal: the speed-up from the fewest to the most "
+    "threads, "
     "over the ratio of their numbers. Cores that share a unit, clocks and memory keep it below 100 %.";
 
 /// More lines than these are hard to read; the table has all.
@@ -45,8 +47,8 @@ AxisCharts charts_along(const ReportInput& input, const ValueOf& value_of)
         AxisLine line{scene.name, row.kernel_and_rays(), row.row->api(), {}};
         const auto value = value_of(line, row, scene, file);
         if (!value) continue;
-        const std::string title = with_letter(fmt::format("{}, {}", line.scene, plural_of(row.kind())), row.file,
-                                              input.files.size());
+        const std::string title =
+            with_letter(fmt::format("{}, {}", line.scene, plural_of(row.kind())), row.file, input.files.size());
         line.scene.clear(); // the chart's title has it
         found[title].add(line, *value, rate_of_row(row, scene));
     }
@@ -66,8 +68,9 @@ std::vector<AxisLine> drawn(std::vector<AxisLine> lines)
 
 std::string caption_of(const std::vector<AxisLine>& lines)
 {
-    return lines.size() <= max_lines_of_axis ? std::string()
-                                             : fmt::format("The {} fastest of {} rows.", max_lines_of_axis, lines.size());
+    return lines.size() <= max_lines_of_axis
+               ? std::string()
+               : fmt::format("The {} fastest of {} rows.", max_lines_of_axis, lines.size());
 }
 
 template <class Y>
@@ -125,24 +128,26 @@ Html parts_of(const AxisCharts& charts, const char* how_to_read, const Chart& ch
 
 Section size_section(const ReportInput& input)
 {
-    const auto charts = charts_along(input, [](AxisLine& line, const ReportRow& row, const ResultScene& scene,
-                                               const ResultFile&) -> std::optional<AxisValue> {
-        const std::string size = size_in(scene.name);
-        if (size.empty()) return std::nullopt;
-        line.scene = scene.name.substr(0, scene.name.size() - size.size());
-        line.backend = row.api;
-        return size_value(scene.width, scene.height);
-    });
+    const auto charts = charts_along(input,
+                                     [](AxisLine& line, const ReportRow& row, const ResultScene& scene,
+                                        const ResultFile&) -> std::optional<AxisValue> {
+                                         const std::string size = size_in(scene.name);
+                                         if (size.empty()) return std::nullopt;
+                                         line.scene = scene.name.substr(0, scene.name.size() - size.size());
+                                         line.backend = row.api;
+                                         return size_value(scene.width, scene.height);
+                                     });
     return {"sizes", "Rates by image size", parts_of(charts, how_to_read_sizes, size_chart, size_table)};
 }
 
 Section thread_section(const ReportInput& input)
 {
-    const auto charts = charts_along(input, [](AxisLine&, const ReportRow& row, const ResultScene&,
-                                               const ResultFile& file) -> std::optional<AxisValue> {
-        const auto threads = row.row->threads > 0 ? row.row->threads : file.head.threads.value_or(0);
-        return threads == 0 ? std::nullopt : std::optional(thread_value(threads));
-    });
+    const auto charts = charts_along(
+        input,
+        [](AxisLine&, const ReportRow& row, const ResultScene&, const ResultFile& file) -> std::optional<AxisValue> {
+            const auto threads = row.row->threads > 0 ? row.row->threads : file.head.threads.value_or(0);
+            return threads == 0 ? std::nullopt : std::optional(thread_value(threads));
+        });
     return {"threads", "Rates by threads", parts_of(charts, how_to_read_threads, thread_chart, thread_table)};
 }
 

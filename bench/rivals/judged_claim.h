@@ -55,8 +55,8 @@ struct JudgedClaim {
 
 /// What options left out of a run: one of those rows could be the fastest.
 struct LeftOut {
-    bool kernels = false; ///< of any device
-    bool apis = false;    ///< APIs of a GPU that has rows of another API
+    bool kernels = false;         ///< of any device
+    bool apis = false;            ///< APIs of a GPU that has rows of another API
     std::vector<RowKey> filtered; ///< rows that --filter left out
 };
 

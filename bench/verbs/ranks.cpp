@@ -223,8 +223,8 @@ std::string command_for(const Shard& shard, const fs::path& all, const Options& 
     const std::string threads = options.thread_counts.empty()
                                     ? std::to_string(resolved_threads(options))
                                     : fmt::format("{}", fmt::join(options.thread_counts, ","));
-    words.insert(words.end(), {"--threads", threads, "--shard", text_of(shard),
-                               "--out", shard_file(all, shard).string()});
+    words.insert(words.end(),
+                 {"--threads", threads, "--shard", text_of(shard), "--out", shard_file(all, shard).string()});
     if (options.verb == Verb::reproduce) words.emplace_back("--resume");
     return command_of(words);
 }

@@ -48,8 +48,8 @@ std::vector<std::string> titles_of(const Table& table)
 TEST(AxisLines, of_sizes_say_what_a_launch_and_a_million_rays_cost)
 {
     const Table table = size_table(size_lines(sized_run(0)));
-    EXPECT_EQ(titles_of(table), (std::vector<std::string>{"row", "backend", "100x100", "200x200", "1000x1000", "a launch",
-                                                          "a million rays"}));
+    EXPECT_EQ(titles_of(table), (std::vector<std::string>{"row", "backend", "100x100", "200x200", "1000x1000",
+                                                          "a launch", "a million rays"}));
     ASSERT_EQ(table.rows().size(), 1u);
     const auto& cells = table.rows().front();
     EXPECT_NEAR(std::get<double>(cells[2]), 0.01 / 0.002, 1e-9);
@@ -76,8 +76,7 @@ TEST(AxisLines, of_threads_say_how_near_they_come_to_the_ideal)
             seconds /= threads == 0 ? 3 : 1;
     }
     const Table table = thread_table(thread_lines(result));
-    EXPECT_EQ(titles_of(table),
-              (std::vector<std::string>{"row", "backend", "1 thread", "4 threads", "of ideal"}));
+    EXPECT_EQ(titles_of(table), (std::vector<std::string>{"row", "backend", "1 thread", "4 threads", "of ideal"}));
     EXPECT_NEAR(std::get<double>(table.rows().front()[4]), 75, 1e-6) << "%";
 }
 

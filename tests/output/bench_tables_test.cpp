@@ -261,7 +261,8 @@ TEST_F(BenchTables, rows_that_did_not_run_are_one_line_below_the_table)
     result_.rows[3].outcome = Failed{ErrorKind::driver, "device lost"};
     EXPECT_EQ(failure_lines(result_.rows).text(),
               row_name(result_.rows[3].key) + ": error: device lost\n" + "3 rows, such as " +
-                  row_name(result_.rows[0].key) + ": skipped: would take about 1 s; with --budget 7m it is measured\n\n");
+                  row_name(result_.rows[0].key) +
+                  ": skipped: would take about 1 s; with --budget 7m it is measured\n\n");
 }
 
 TEST_F(BenchTables, no_two_columns_of_csv_have_one_key)

@@ -264,13 +264,12 @@ TEST(CheckJudgement, reports_names_and_self_tests_that_the_run_cannot_have)
 {
     RowRecord untested = good_row();
     untested.self_test.reset();
-    const Expectations expectations =
-        expecting({{"self_test", {{"exact", true}}},
-                   {"exceptions",
-                    {{"cdt/maria/tet80", "bit-exact"},
-                     {"banana/cdt/maria/tet80/shadow", "wrong"},
-                     {"cdt/maria/tet80/packets", "wrong"},
-                     {"cdt/marja/tet80", "wrong"}}}});
+    const Expectations expectations = expecting({{"self_test", {{"exact", true}}},
+                                                 {"exceptions",
+                                                  {{"cdt/maria/tet80", "bit-exact"},
+                                                   {"banana/cdt/maria/tet80/shadow", "wrong"},
+                                                   {"cdt/maria/tet80/packets", "wrong"},
+                                                   {"cdt/marja/tet80", "wrong"}}}});
     const auto unknown = unknown_of(judge_rows({untested, untested}, &expectations, false));
     ASSERT_EQ(unknown.size(), 3u);
     EXPECT_TRUE(contains(unknown[0], "cdt/maria/tet80/packets: no row of vulkan has this name")) << unknown[0];

@@ -13,9 +13,10 @@ namespace {
 
 class Axes : public ProgramTest {
 protected:
-    static constexpr const char* bench = "bench --backend openmp --scene cubes --resolution 3 --size 16,32 --threads 1,2 "
-                                         "--method maria,single --layout tet80,bvh2 --schedule tiles --views 0,1 "
-                                         "--samples 5 --sample-time 0 ";
+    static constexpr const char* bench =
+        "bench --backend openmp --scene cubes --resolution 3 --size 16,32 --threads 1,2 "
+        "--method maria,single --layout tet80,bvh2 --schedule tiles --views 0,1 "
+        "--samples 5 --sample-time 0 ";
 
     [[nodiscard]] json section(const char* name) const { return json::parse(file(name)).at("tetrace"); }
     [[nodiscard]] std::set<std::string> names(const char* name) const
@@ -43,7 +44,8 @@ TEST_F(Axes, have_a_row_at_each_size_with_each_number_of_threads)
         EXPECT_EQ(row.at("counts").at("rays"), 2 * (is_small ? 16 * 16 : 32 * 32));
         EXPECT_EQ(row.contains("threads"), row.at("name").get<std::string>().ends_with("/threads:1"));
         if (row.at("rates").contains("best_bvh")) {
-            EXPECT_EQ(row.at("rates").at("best_bvh").get<std::string>().ends_with("/threads:1"), row.contains("threads"))
+            EXPECT_EQ(row.at("rates").at("best_bvh").get<std::string>().ends_with("/threads:1"),
+                      row.contains("threads"))
                 << "rows with as many threads are compared";
         }
     }
@@ -53,8 +55,8 @@ TEST_F(Axes, have_a_row_at_each_size_with_each_number_of_threads)
         EXPECT_TRUE(contains(shown.out, "at 16x16, 32x32 on 1, 2 threads"));
     }
     ASSERT_EQ(run("report r.json --out page.html --charts charts").code, 0);
-    for (const char* const chart : {"sizes-rate-by-image-size-cubes-processors.svg",
-                                    "threads-speed-up-by-threads-cubes-size-32-processors.svg"})
+    for (const char* const chart :
+         {"sizes-rate-by-image-size-cubes-processors.svg", "threads-speed-up-by-threads-cubes-size-32-processors.svg"})
         EXPECT_TRUE(std::filesystem::exists(folder_ / "charts" / chart)) << chart;
     const Ended compared = run("compare r.json r.json --format json --out c.json");
     EXPECT_TRUE(compared.code == 0 || compared.code == 1) << compared.errors;

@@ -13,8 +13,8 @@ namespace {
 
 Options options_of(const std::vector<std::string>& more)
 {
-    std::vector<std::string> words = {"bench",    "--scene",  "cubes", "--method",   "maria",
-                                      "--layout", "tet80",    "--schedule", "tiles"};
+    std::vector<std::string> words = {"bench",    "--scene", "cubes",      "--method", "maria",
+                                      "--layout", "tet80",   "--schedule", "tiles"};
     words.insert(words.end(), more.begin(), more.end());
     return parse_options(words);
 }
