@@ -237,7 +237,7 @@ std::vector<OptionRow> row_options()
          "'reproduce rivals' is not testable without its rows. Default: all.",
          sharing | bit(Verb::render) | bit(Verb::compare), false,
          [](Options& o, const std::string& v) { o.filter = parse_filter(v); },
-         usual_for(every_verb, "rows whose names match, as tet96.*openmp")},
+         usual_for(~bit(Verb::reproduce), "rows whose names match, as tet96.*openmp")},
         {"Rows", "--list", "", "Print the names of the selected rows and stop.", measuring, false, set(&Options::list)},
     };
 }

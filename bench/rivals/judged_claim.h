@@ -55,9 +55,9 @@ struct JudgedClaim {
 
 /// What options left out of a run: one of those rows could be the fastest.
 struct LeftOut {
-    bool kernels = false;         ///< of any device
-    bool apis = false;            ///< APIs of a GPU that has rows of another API
-    std::vector<RowKey> filtered; ///< rows that --filter left out
+    bool kernels = false;              ///< of any device
+    bool apis = false;                 ///< APIs of a GPU that has rows of another API
+    std::vector<RowKey> filtered = {}; ///< rows that --filter left out
 };
 
 /// Judges a claim by the contests that it is about. It holds only if every number's interval is on the right side of

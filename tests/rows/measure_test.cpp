@@ -169,6 +169,7 @@ TEST_F(Measure, a_noisy_row_is_sampled_on_while_the_budget_lasts_unless_the_numb
 TEST_F(Measure, a_run_that_goes_on_while_noisy_rows_are_sampled_on_takes_no_sample_twice)
 {
     options_.samples = 6;
+    options_.exact_samples = false;
     const TemporaryFolder folder;
     // A calibration that stays slow after its first reading: rows are noisy to the end, and have all that they may.
     const auto measure = [&](bool resume, int interrupted_at) {

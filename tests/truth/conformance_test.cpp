@@ -134,7 +134,8 @@ void expect_self_test(const Expectation& expectation, const std::vector<RowRecor
     const auto row = std::ranges::find_if(rows, [](const RowRecord& one) { return one.self_test.has_value(); });
     ASSERT_EQ(row != rows.end(), !expectation.self_test.empty()) << "either has a self-test";
     if (row == rows.end()) return;
-    for (const auto& [item, value] : self_test_json(*row->self_test).items())
+    const nlohmann::json shown = self_test_json(*row->self_test);
+    for (const auto& [item, value] : shown.items())
         EXPECT_TRUE(expectation.self_test.contains(item)) << "self_test." << item << " is " << value << " now";
 }
 
