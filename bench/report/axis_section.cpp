@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <map>
 
 namespace tetrace {
 
@@ -24,8 +23,8 @@ const char* const how_to_read_threads =
 /// More lines than these are hard to read; the table has all.
 constexpr std::size_t max_lines_of_axis = 14;
 
-/// The lines of one chart: rows of one result, scene and kind of device.
-using AxisCharts = std::map<std::string, std::vector<AxisLine>>;
+/// The lines of each chart by its title: rows of one result, scene and kind of device.
+using AxisCharts = std::vector<std::pair<std::string, std::vector<AxisLine>>>;
 
 AxisRate rate_of_row(const ReportRow& row, const ResultScene& scene)
 {
@@ -34,12 +33,12 @@ AxisRate rate_of_row(const ReportRow& row, const ResultScene& scene)
     return axis_rate(row.rate->mrays_per_s, median_mrays, static_cast<double>(launches), row.row->samples_s);
 }
 
-/// What is measured along one axis. value_of(line, row, file): the row's place; takes the axis out of the line's names.
+/// What is measured along one axis. value_of(line, row, scene, file): the row's place; takes the axis out of the line's names.
 /// Empty if the row is not on the axis.
 template <class ValueOf>
 AxisCharts charts_along(const ReportInput& input, const ValueOf& value_of)
 {
-    std::map<std::string, AxisLines> found;
+    std::vector<std::pair<std::string, AxisLines>> found;
     for (const ReportRow& row : input.rows) {
         if (!row.rate || row.row->samples_s.empty()) continue;
         const ResultFile& file = input.files[row.file];
@@ -50,11 +49,13 @@ AxisCharts charts_along(const ReportInput& input, const ValueOf& value_of)
         const std::string title =
             with_letter(fmt::format("{}, {}", line.scene, plural_of(row.kind())), row.file, input.files.size());
         line.scene.clear(); // the chart's title has it
-        found[title].add(line, *value, rate_of_row(row, scene));
+        auto chart = std::ranges::find(found, title, &std::pair<std::string, AxisLines>::first);
+        if (chart == found.end()) chart = found.insert(found.end(), {title, {}});
+        chart->second.add(line, *value, rate_of_row(row, scene));
     }
     AxisCharts charts;
     for (const auto& [title, lines] : found)
-        if (auto whole = lines.whole(); !whole.empty()) charts.emplace(title, std::move(whole));
+        if (auto whole = lines.whole(); !whole.empty()) charts.emplace_back(title, std::move(whole));
     return charts;
 }
 
