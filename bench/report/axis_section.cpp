@@ -33,8 +33,8 @@ AxisRate rate_of_row(const ReportRow& row, const ResultScene& scene)
     return axis_rate(row.rate->mrays_per_s, median_mrays, static_cast<double>(launches), row.row->samples_s);
 }
 
-/// What is measured along one axis. value_of(line, row, scene, file): the row's place; takes the axis out of the line's names.
-/// Empty if the row is not on the axis.
+/// What is measured along one axis. value_of(line, row, scene, file): the row's place; takes the axis out of the line's
+/// names. Empty if the row is not on the axis.
 template <class ValueOf>
 AxisCharts charts_along(const ReportInput& input, const ValueOf& value_of)
 {
