@@ -263,7 +263,11 @@ fs::path cached_scene_path(const std::string& label, std::uint64_t mesh_hash, co
     if (!options.repair) key += " not repaired";
     if (options.tets == TetsKind::rays)
         key += fmt::format(" effort {} optimiser {}", options.effort, optimiser_version);
-    const std::string name = fmt::format("{}-{}.tet", safe_name(label), hash_text(hash_of(key)));
+    return path_to_read(fmt::format("{}-{}.tet", safe_name(label), hash_text(hash_of(key))));
+}
+
+fs::path path_to_read(const std::string& name)
+{
     std::error_code ignored; // then there is none
     if (const fs::path home = closed_cache_home(); !home.empty() && fs::exists(home / "tetrace" / name, ignored))
         return home / "tetrace" / name;

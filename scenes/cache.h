@@ -39,12 +39,15 @@ private:
 /// The folder tetrace of cache_home(); made when first written to. Throws Error{missing} if there is none.
 [[nodiscard]] std::filesystem::path cache_directory();
 
+/// Where the file of this name is read from: closed_cache_home(), if that has it, else the folder above.
+[[nodiscard]] std::filesystem::path path_to_read(const std::string& name);
+
 /// A part of the key of tets for rays: raised where the optimiser makes others of the same mesh.
 inline constexpr std::uint32_t optimiser_version = 4;
 
 /// The file of the scene that is built from a mesh with these options: `<label>-<16 digits>.tet`. The digits are a hash
 /// of the mesh's bytes (mesh_hash), of the options that decide the tets, of scene_file_version, and of
-/// optimiser_version for tets for rays. It is in closed_cache_home() if that has it.
+/// optimiser_version for tets for rays. As path_to_read() has it.
 [[nodiscard]] std::filesystem::path cached_scene_path(const std::string& label, std::uint64_t mesh_hash,
                                                       const BuildOptions& options);
 

@@ -43,10 +43,10 @@ std::string other_mesh(const PinnedScene& pinned, const fs::path& mesh)
                        hash_text(hasher.hash()), pinned.name, hash_text(pinned.source_hash));
 }
 
-/// Where the scene is cached if its stored tets are used.
-fs::path cached_file(const PinnedScene& pinned)
+/// The name of its file in the cache if its stored tets are used.
+std::string cached_name(const PinnedScene& pinned)
 {
-    return cache_directory() / fmt::format("{}-{}.tet", pinned.name, hash_text(pinned.scene_hash));
+    return fmt::format("{}-{}.tet", pinned.name, hash_text(pinned.scene_hash));
 }
 
 std::optional<LoadedScene> read_cached(const PinnedScene& pinned, const fs::path& file)
@@ -88,7 +88,7 @@ Scene joined_scene(const PinnedScene& pinned, const fs::path& mesh_only)
 LoadedScene from_stored_tets(const PinnedScene& pinned, const SceneRequest& request, const fs::path& mesh,
                              const Progress& progress)
 {
-    const fs::path file = cached_file(pinned);
+    const fs::path file = cache_directory() / cached_name(pinned);
     make_cache_folder(file.parent_path());
     const FileLock lock = FileLock::wait_for(file, [&] {
         if (progress) progress(fmt::format("waiting for another process that builds {}", pinned.name), -1, "");
@@ -138,7 +138,7 @@ LoadedScene load_pinned(const PinnedScene& pinned, const SceneRequest& request, 
     }
     LoadedScene loaded;
     std::string reason = "another optimiser made them";
-    if (auto cached = read_cached(pinned, cached_file(pinned)))
+    if (auto cached = read_cached(pinned, path_to_read(cached_name(pinned))))
         loaded = std::move(*cached);
     else {
         std::vector<std::string> messages;

@@ -378,7 +378,7 @@ Report defect_report(const std::vector<DefectRun>& runs, const std::vector<std::
         section["defects"].push_back(run_json(run));
     section["missing_devices"] = missing;
     if (expectations != nullptr) {
-        set_expectations(section, deviations_of(runs), unmentioned_of(runs, *expectations));
+        set_expectations(section, *expectations, deviations_of(runs), unmentioned_of(runs, *expectations));
         set_verdict(section, verdict_on(runs));
     }
     const nlohmann::json json = {{"tetrace", std::move(section)}};

@@ -98,9 +98,13 @@ Sheet verdict_line(const ResultValue& section)
     return verdict ? CheckVerdict{verdict->at("conforms").flag(), verdict->at("text").line()}.line() : Sheet();
 }
 
-void set_expectations(nlohmann::json& section, const std::vector<Deviation>& deviations,
-                      const std::vector<std::string>& unmentioned)
+void set_expectations(nlohmann::json& section, const Expectations& expectations,
+                      const std::vector<Deviation>& deviations, const std::vector<std::string>& unmentioned,
+                      const std::vector<std::string>& unknown)
 {
+    std::set<std::string> files;
+    for (const auto& [implementation, expectation] : expectations)
+        files.insert(expectation.file);
     nlohmann::json list = nlohmann::json::array();
     for (const Deviation& one : deviations) {
         nlohmann::json& object = list.emplace_back();
@@ -111,7 +115,17 @@ void set_expectations(nlohmann::json& section, const std::vector<Deviation>& dev
                   {"shown", one.judged.shown}};
         if (!one.implementation.empty()) object["implementation"] = one.implementation;
     }
-    section["expectations"] = {{"deviations", std::move(list)}, {"unmentioned", unmentioned}};
+    section["expectations"] = {{"files", files}, {"deviations", std::move(list)}, {"unmentioned", unmentioned}};
+    if (!unknown.empty()) section["expectations"]["unknown"] = unknown;
+}
+
+std::vector<std::string> unknown_of(const CheckJudgement& judgement)
+{
+    std::vector<std::string> sentences;
+    for (const JudgedDevice& device : judgement.devices)
+        for (const std::string& sentence : device.unknown)
+            if (std::ranges::find(sentences, sentence) == sentences.end()) sentences.push_back(sentence);
+    return sentences;
 }
 
 std::vector<std::string> unmentioned_of(const CheckJudgement& judgement)
@@ -147,6 +161,9 @@ Sheet expectation_lines(const ResultValue& section)
     for (const ResultValue& implementation : expectations->at("unmentioned").items())
         sheet.labelled("Unknown", fmt::format("no file of --expect mentions {}: it is expected to conform.",
                                               implementation.line()));
+    if (const auto unknown = expectations->find("unknown"))
+        for (const ResultValue& sentence : unknown->items())
+            sheet.labelled("Unknown", sentence.line() + ".");
     return sheet;
 }
 

@@ -36,13 +36,17 @@ void set_verdict(nlohmann::json& section, const std::optional<CheckVerdict>& ver
 /// The line of a result's verdict; nothing for a result without.
 [[nodiscard]] Sheet verdict_line(const ResultValue& section);
 
-/// In a result, under "expectations": what is not simply as it should be, and the implementations that no file
-/// mentions.
-void set_expectations(nlohmann::json& section, const std::vector<Deviation>& deviations,
-                      const std::vector<std::string>& unmentioned);
+/// In a result, under "expectations": the files that count, what is not simply as it should be, the implementations
+/// that no file mentions, and sentences on what files say of rows and items that the run cannot have.
+void set_expectations(nlohmann::json& section, const Expectations& expectations,
+                      const std::vector<Deviation>& deviations, const std::vector<std::string>& unmentioned,
+                      const std::vector<std::string>& unknown = {});
 
 /// Of a judgement's devices, those that no file mentions, each implementation once.
 [[nodiscard]] std::vector<std::string> unmentioned_of(const CheckJudgement& judgement);
+
+/// JudgedDevice::unknown of all devices, each sentence once.
+[[nodiscard]] std::vector<std::string> unknown_of(const CheckJudgement& judgement);
 
 /// The names of what failed as expected, by a result's "expectations".
 [[nodiscard]] std::set<std::string> known_failures(const ResultValue& section);

@@ -101,6 +101,34 @@ std::string expected_name(const RowKey& key)
     return name;
 }
 
+namespace {
+
+/// The names that rows of the backend may have among exceptions.
+std::set<std::string> names_on(const Backend& backend)
+{
+    std::set<std::string> names;
+    for (const RayKind kind : values_of<RayKind>())
+        for (const KernelId& kernel : kernels_of(kind == RayKind::primary ? Task::trace : Task::rays)) {
+            if (!backend.has_kernel(kernel)) continue;
+            for (const RayOrder ray_order : values_of<RayOrder>())
+                for (const TetOrder order : values_of<TetOrder>())
+                    names.insert(expected_name({{}, {}, kernel, kind, order, 0, 0, ray_order}));
+        }
+    return names;
+}
+
+} // namespace
+
+std::vector<std::string> names_of_no_row(const Expectation& expectation, const Backend& backend)
+{
+    std::vector<std::string> unknown;
+    if (expectation.exceptions.empty()) return unknown;
+    const auto names = names_on(backend);
+    for (const auto& [name, status] : expectation.exceptions)
+        if (!names.contains(name) && !names.contains(name.substr(name.find('/') + 1))) unknown.push_back(name);
+    return unknown;
+}
+
 const Finding* Expectation::status_of(const RowKey& key) const
 {
     const std::string name = expected_name(key);

@@ -32,6 +32,7 @@ struct Expectation {
     std::map<std::string, DefectFinding> defects;        ///< by name
     std::vector<Flakes> flakes;
     std::set<std::string> judged = {}; ///< names of exceptions that a run would have made; not in files
+    std::string file = {};             ///< that it was read from
 
     /// Null if the file does not mention the row, which is then expected to conform.
     [[nodiscard]] const Finding* status_of(const RowKey& key) const;
@@ -46,6 +47,9 @@ using Expectations = std::map<std::string, Expectation>;
 /// A row's name among exceptions: "cdt/maria/tet80", followed by what is not usual of it: "/persistent", "/shadow",
 /// "/rays:morton", "/order:hilbert", "/math:fast".
 [[nodiscard]] std::string expected_name(const RowKey& key);
+
+/// Those of exceptions that no row of the backend has in any scene: of a kernel that it lacks, or with a mistake.
+[[nodiscard]] std::vector<std::string> names_of_no_row(const Expectation& expectation, const Backend& backend);
 
 /// Throws Error{invalid_input} naming file, key and the accepted values.
 [[nodiscard]] Expectation expectation_from(const ResultValue& value);

@@ -42,10 +42,13 @@ void read_file(Expectations& all, const fs::path& path, bool is_in_folder)
     const ResultValue value(file, path.string(), file_kind);
     if (is_single(file)) {
         all[path.stem().string()] = expectation_from(value);
+        all[path.stem().string()].file = path.string();
         return;
     }
-    for (const auto& [implementation, one] : value.members())
+    for (const auto& [implementation, one] : value.members()) {
         all[implementation] = expectation_from(one);
+        all[implementation].file = path.string();
+    }
 }
 
 void read_path(Expectations& all, const fs::path& path)

@@ -73,14 +73,30 @@ JudgedDevice& device_of(std::vector<JudgedDevice>& devices, const RowRecord& row
     const auto known = std::ranges::find(devices, label, &JudgedDevice::label);
     if (known != devices.end()) return *known;
     const Device& device = row.device;
-    return devices.emplace_back(JudgedDevice{row.key.backend,
-                                             label,
-                                             device.name,
-                                             device.driver,
-                                             device.implementation,
-                                             find_in(expectations, device.implementation) != nullptr,
-                                             false,
-                                             {}});
+    const Expectation* const expectation = find_in(expectations, device.implementation);
+    JudgedDevice& added = devices.emplace_back(JudgedDevice{row.key.backend,
+                                                            label,
+                                                            device.name,
+                                                            device.driver,
+                                                            device.implementation,
+                                                            expectation != nullptr,
+                                                            false,
+                                                            {},
+                                                            {}});
+    if (const Backend* const backend = find_backend(row.key.backend); expectation != nullptr && backend != nullptr)
+        for (const std::string& name : names_of_no_row(*expectation, *backend))
+            added.unknown.push_back(
+                fmt::format("{}: {}: no row of {} has this name", expectation->file, name, row.key.backend));
+    return added;
+}
+
+/// An expected self-test that no row of the device shows.
+void add_missing_self_test(JudgedDevice& device, const Expectations* expectations)
+{
+    const Expectation* const expectation = find_in(expectations, device.implementation);
+    if (expectation == nullptr || expectation->self_test.empty() || device.has_self_test) return;
+    device.unknown.push_back(
+        fmt::format("{}: self_test: no row of this run on {} has one in exact mode", expectation->file, device.label));
 }
 
 void judge_self_test(JudgedDevice& device, const RowRecord& row, const Expectation* expectation)
@@ -115,6 +131,8 @@ CheckJudgement judge_rows(const std::vector<RowRecord>& rows, const Expectations
         if (row.device.implementation.empty()) continue; // its scene or its driver could not be loaded
         judge_self_test(device_of(all.devices, row, expectations), row, expectation);
     }
+    for (JudgedDevice& device : all.devices)
+        add_missing_self_test(device, expectations);
     for (const JudgedDevice& device : all.devices)
         all.deviations.insert(all.deviations.end(), device.self_tests.begin(), device.self_tests.end());
     return all;

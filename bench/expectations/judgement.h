@@ -44,6 +44,7 @@ struct JudgedDevice {
     bool is_mentioned = false;         ///< whether a file says anything of the implementation
     bool has_self_test = false;        ///< whether a file says how it computes, and the run shows it
     std::vector<Deviation> self_tests; ///< items that are not as expected
+    std::vector<std::string> unknown;  ///< what its file says of rows or items that the run cannot have, as sentences
 };
 
 /// A check's rows against what was expected of them.

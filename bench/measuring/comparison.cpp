@@ -33,7 +33,7 @@ const RowRecord* find_reference(const std::vector<RowRecord>& rows, const std::v
     const RowRecord* first = nullptr;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const RowRecord& other = rows[i];
-        if (hardware[i] != hardware[index] || !same_work(row.key, other.key) ||
+        if (hardware[i] != hardware[index] || !same_work(row.key, other.key) || other.key.threads != row.key.threads ||
             other.key.kernel.schedule != Schedule::tiles || !figures_of(other))
             continue;
         if (other.key.backend == preferred) return &other;

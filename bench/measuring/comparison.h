@@ -25,9 +25,9 @@ struct Comparison {
 [[nodiscard]] std::string interval_text(const Comparison& comparison);
 
 /// The reference of each row, row by row: the same kernel on the same scene and the same hardware (see
-/// physical_devices()), with schedule tiles. The reference runs under reference_name(), and on a GPU that lacks it
-/// under the first API that has the row. A GPU's rows and the host's, which include emulations, are therefore never
-/// compared. Empty for references themselves, Embree's rows, and rows without a rate.
+/// physical_devices()) and as many threads, with schedule tiles. The reference runs under reference_name(), and on a
+/// GPU that lacks it under the first API that has the row. A GPU's rows and the host's, which include emulations, are
+/// therefore never compared. Empty for references themselves, Embree's rows, and rows without a rate.
 [[nodiscard]] std::vector<std::optional<Comparison>> compare_rows(const std::vector<RowRecord>& rows);
 
 /// What Contest asks of a row.

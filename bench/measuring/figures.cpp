@@ -102,7 +102,7 @@ std::optional<double> ratio_to_single(const RowRecord& row, const std::vector<Ro
     double fastest = 0;
     for (const RowRecord& other : rows)
         if (is_embree(other.key.kernel.layout) && other.key.kernel.method == Method::single &&
-            same_rays(other.key, row.key))
+            same_rays(other.key, row.key) && other.key.threads == row.key.threads)
             if (const auto single = figures_of(other)) fastest = std::max(fastest, single->mrays_per_s);
     if (!figures || fastest == 0) return std::nullopt;
     return figures->mrays_per_s / fastest;

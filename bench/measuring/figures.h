@@ -50,8 +50,7 @@ struct RayShares {
 [[nodiscard]] RayShares ray_shares(const Traced& traced);
 
 /// The row's Mrays/s over those of Embree's single rays on the same scene, through the faster of its trees; empty where
-/// either has none, and for rows
-/// that do not run on the host, as Embree does.
+/// either has none, and for rows that do not run on the host with as many threads, as Embree does.
 [[nodiscard]] std::optional<double> ratio_to_single(const RowRecord& row, const std::vector<RowRecord>& rows);
 
 } // namespace tetrace

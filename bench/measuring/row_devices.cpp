@@ -101,7 +101,8 @@ std::optional<CopyShares> copy_shares(const RowRecord& row, const std::vector<Ro
 {
     const auto figures = figures_of(row);
     const auto place = device_of(row, devices);
-    if (!figures || !figures->gb_per_s || !place || !devices[*place].yardstick) return std::nullopt;
+    if (!figures || !figures->gb_per_s || row.key.threads != 0 || !place || !devices[*place].yardstick)
+        return std::nullopt;
     const Yardstick& yardstick = *devices[*place].yardstick;
     const double bytes_per_s = 1e9 * *figures->gb_per_s;
     const double ceiling = yardstick.copy_bytes_per_s_of(row.setup.bytes.value_or(0));

@@ -41,7 +41,8 @@ struct CopyShares {
     double of_ceiling;          ///< of the level of its memory that holds the row's scene
     double ceiling_bytes_per_s; ///< that level's
 };
-/// Empty if the row lacks an estimated bandwidth, or its device a microbenchmark.
+/// Empty if the row lacks an estimated bandwidth, or its device a microbenchmark, and for a row with fewer threads than
+/// the copies had.
 [[nodiscard]] std::optional<CopyShares> copy_shares(const RowRecord& row, const std::vector<RowDevice>& devices);
 
 } // namespace tetrace

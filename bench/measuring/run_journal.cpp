@@ -2,6 +2,7 @@
 
 #include "bench/options/identity.h"
 #include "bench/rows/scene_work.h"
+#include "bench/rows/sized_scene.h"
 #include "bench/terminal/progress.h"
 #include "core/base/error.h"
 #include "core/base/hash.h"
@@ -53,7 +54,8 @@ json run_head(const Options& options, const std::vector<RowKey>& keys)
                  {"rows", json::array()},
                  {"devices", json::array()}};
     for (const SceneRequest& request : scene_requests(options))
-        head["scenes"].push_back(scene_head(request, scene_label(request.name)));
+        for (const SizedScene& sized : sized_scenes(scene_label(request.name), options))
+            head["scenes"].push_back(scene_head(request, sized.label));
     for (const RowKey& key : keys)
         head["rows"].push_back(row_name(key));
     for (const Backend* backend : all_backends()) {

@@ -1,5 +1,6 @@
 #include "bench/measuring/scene_rows.h"
 
+#include "bench/rows/sized_scene.h"
 #include "bench/terminal/interrupts.h"
 #include "bench/terminal/progress.h"
 #include "core/base/hash.h"
@@ -36,32 +37,52 @@ void skip_interrupted(SceneRows& result, std::span<const RowKey> keys)
     }
 }
 
+void open_rows_of(SceneRows& result, SceneWork& scene, const std::vector<RowKey>& keys, const Options& options)
+{
+    for (const RowKey& key : keys) {
+        const double done = static_cast<double>(&key - keys.data()) / static_cast<double>(keys.size());
+        progress_line().show("opening " + scene.label(), done, -1, row_label(key));
+        if (is_interrupted())
+            skip_interrupted(result, {&key, 1});
+        else
+            result.rows.push_back(open_row(key, scene, options));
+    }
+}
+
+/// The scene is loaded once for all sizes of its images.
+void open_sizes(SceneRows& result, const std::vector<RowKey>& keys, const SceneRequest& request, const Options& options)
+{
+    const SceneWork* first = nullptr;
+    for (const SizedScene& sized : sized_scenes(scene_label(request.name), options)) {
+        const auto of_size = rows_of(sized.label, keys);
+        if (of_size.empty()) continue;
+        const Options own = at_size(options, sized.size);
+        result.scenes.push_back(std::make_unique<SceneWork>(
+            first == nullptr ? load_work(request, own, sized.label) : resized(*first, request, own, sized.label)));
+        first = result.scenes.back().get();
+        open_rows_of(result, *result.scenes.back(), of_size, own);
+    }
+}
+
+/// keys: all of the scene, size after size.
 void open_rows(SceneRows& result, const std::vector<RowKey>& keys, const SceneRequest& request, const Options& options)
 {
-    if (is_interrupted()) {
-        skip_interrupted(result, keys);
-        return;
-    }
+    const std::size_t before = result.rows.size();
+    const auto not_opened = [&] { return std::span(keys).subspan(result.rows.size() - before); };
     try {
-        auto scene = std::make_unique<SceneWork>(load_work(request, options));
-        for (const RowKey& key : keys) {
-            const double done = static_cast<double>(&key - keys.data()) / static_cast<double>(keys.size());
-            progress_line().show("opening " + scene->label(), done, -1, row_label(key));
-            if (is_interrupted())
-                skip_interrupted(result, {&key, 1});
-            else
-                result.rows.push_back(open_row(key, *scene, options));
-        }
-        result.scenes.push_back(std::move(scene));
+        if (is_interrupted())
+            skip_interrupted(result, keys);
+        else
+            open_sizes(result, keys, request, options);
     } catch (const Error& error) {
         if (error.kind() == ErrorKind::interrupted && is_stop_handled()) { // the builder had the signal
             interrupt();
-            skip_interrupted(result, keys);
+            skip_interrupted(result, not_opened());
             return;
         }
         if (!ends_rows(error)) throw;
         say(fmt::format("{}: {}", scene_label(request.name), error.what()));
-        for (const RowKey& key : keys)
+        for (const RowKey& key : not_opened())
             result.rows.push_back(failed_row(key, error));
     }
 }
@@ -84,29 +105,12 @@ void verify_scene(std::vector<RowRun>& rows, SceneWork& scene, const Options& op
     }
 }
 
-/// Two files with the same stem would give two rows the same name.
-void check_labels(const std::vector<SceneRequest>& requests)
-{
-    for (std::size_t i = 0; i < requests.size(); ++i)
-        for (std::size_t j = 0; j < i; ++j)
-            if (scene_label(requests[i].name) == scene_label(requests[j].name))
-                throw Error(ErrorKind::usage,
-                            fmt::format("--scene: '{}' and '{}' would both be called '{}' in the results; name each "
-                                        "scene once, and rename one of the files",
-                                        requests[j].name, requests[i].name, scene_label(requests[i].name)));
-}
-
 } // namespace
 
 std::vector<RowKey> selected_rows(const Options& options, const std::function<bool(const std::string&)>& keeps)
 {
-    const auto requests = scene_requests(options);
-    check_labels(requests);
-    std::vector<std::string> labels;
-    for (const SceneRequest& request : requests)
-        labels.push_back(scene_label(request.name));
     std::vector<RowKey> rows;
-    for (RowKey& key : select_rows(options, labels))
+    for (RowKey& key : select_rows(options, scene_labels(options)))
         if (keeps(row_name(key))) rows.push_back(std::move(key));
     if (rows.empty())
         throw Error(ErrorKind::usage,
@@ -120,7 +124,9 @@ SceneRows open_and_verify(const std::vector<RowKey>& keys, const Options& option
     SceneRows result;
     result.rows.reserve(keys.size()); // rows keep their addresses
     for (const SceneRequest& request : scene_requests(options)) {
-        const auto scene_keys = rows_of(scene_label(request.name), keys);
+        std::vector<RowKey> scene_keys;
+        for (const SizedScene& sized : sized_scenes(scene_label(request.name), options))
+            std::ranges::move(rows_of(sized.label, keys), std::back_inserter(scene_keys));
         if (!scene_keys.empty()) open_rows(result, scene_keys, request, options);
     }
     const unsigned samples = options.verb == Verb::check ? 0 : options.samples;

@@ -233,10 +233,11 @@ std::vector<OptionRow> row_options()
          selecting, true, append("--schedule", &Options::schedules),
          usual_for(bit(Verb::inspect), "how work items get their rays: {}")},
         {"Rows", "--filter", "REGEX",
-         "Keep the rows whose names match this regular expression (RE2) anywhere: 'tet96.*openmp'. Default: all.",
-         measuring | bit(Verb::render) | bit(Verb::compare), false,
+         "Keep the rows whose names match this regular expression (RE2) anywhere: 'tet96.*openmp'. A claim of "
+         "'reproduce rivals' is not testable without its rows. Default: all.",
+         sharing | bit(Verb::render) | bit(Verb::compare), false,
          [](Options& o, const std::string& v) { o.filter = parse_filter(v); },
-         usual_for(every_verb, "rows whose names match, as tet96.*openmp")},
+         usual_for(~bit(Verb::reproduce), "rows whose names match, as tet96.*openmp")},
         {"Rows", "--list", "", "Print the names of the selected rows and stop.", measuring, false, set(&Options::list)},
     };
 }
@@ -260,16 +261,25 @@ std::vector<OptionRow> ray_options()
          [](Options& o, const std::string& v) { o.views += (o.views.empty() ? "" : ",") + v; },
          usual_for(bit(Verb::render) | bit(Verb::reproduce), "views of the set: 0,3,10-20 or 0-1281:64")},
         {"Rays", "--size", "WxH",
-         "Image size in pixels, one ray each; N means NxN. Default: 1024x1024; for 'check', 'trace' and 'dump' "
-         "256x256, for "
-         "'reproduce rivals' 512x512.",
-         with_rays, false,
-         [](Options& o, const std::string& v) { std::tie(o.width, o.height) = parse_size("--size", v); },
+         "Image size in pixels, one ray each; N means NxN. 'bench' accepts a list, for example 256,512,1024, and "
+         "measures each row at each size. Default: 1024x1024; for 'check', 'trace' and 'dump' 256x256, for 'reproduce "
+         "rivals' 512x512.",
+         with_rays, true,
+         [](Options& o, const std::string& v) {
+             std::tie(o.width, o.height) = parse_size("--size", v);
+             o.sizes.push_back({o.width, o.height});
+         },
          usual_for(every_verb, "pixels of the image: 640x480, or 512 for 512x512")},
         {"Rays", "--threads", "N",
          "Host threads; 0 means OMP_NUM_THREADS if it is set, or else all CPUs that the process may use; in a "
-         "container with a CPU quota, the quota rounded down. Scenes are always built with 0. Default: 0.",
-         with_rays, false, set_count("--threads", &Options::threads, 0, 4096)},
+         "container with a CPU quota, the quota rounded down. 'bench' accepts a list, for example 1,2,4, and measures "
+         "each row of a processor with each number; all else has the largest. Scenes are always built with 0. Default: "
+         "0.",
+         with_rays, true,
+         [](Options& o, const std::string& v) {
+             o.thread_counts.push_back(static_cast<unsigned>(parse_count("--threads", v, 0, 4096)));
+             o.threads = std::ranges::max(o.thread_counts);
+         }},
         {experiments, "--tile", "WxH", "Pixels per work-group: 8x4 or 8x8. Default: depends on the type of the device.",
          reproducing | bit(Verb::dump), false,
          ApplyOption([](Options& o, const std::string& v) { o.tile_height = parse_tile_height(v); }, tile_names())},

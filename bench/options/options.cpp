@@ -112,6 +112,30 @@ void check_single(const Options& options, const char* name, std::size_t count)
                                                   name_of(options.verb)));
 }
 
+/// A list is an axis of `bench`: each value once. One value is none.
+template <class T, class Text>
+void check_axis(Verb verb, const char* name, std::vector<T>& values, const Text& text)
+{
+    if (verb != Verb::bench && values.size() > 1)
+        throw Error(ErrorKind::usage,
+                    fmt::format("{} accepts one value for '{}'; lists are for 'tetrace bench'", name, name_of(verb)));
+    for (std::size_t i = 1; i < values.size(); ++i)
+        if (std::find(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(i), values[i]) !=
+            values.begin() + static_cast<std::ptrdiff_t>(i))
+            throw Error(ErrorKind::usage, fmt::format("{}: {} is given twice", name, text(values[i])));
+    if (values.size() == 1) values.clear();
+}
+
+void check_axes(Options& options)
+{
+    check_axis(options.verb, "--size", options.sizes,
+               [](ImageSize size) { return fmt::format("{}x{}", size.width, size.height); });
+    check_axis(options.verb, "--threads", options.thread_counts, [](unsigned count) { return std::to_string(count); });
+    std::ranges::sort(options.thread_counts);
+    if (!options.thread_counts.empty() && options.thread_counts.front() == 0)
+        throw Error(ErrorKind::usage, "--threads: 0 means all, which a list has to give as a number, as in 1,2,4");
+}
+
 /// `trace` follows one ray, and a case of `dump` has the work-group of one.
 void check_ray(const Options& options)
 {
@@ -289,6 +313,7 @@ Options parse_verb(Verb verb, const std::vector<std::string>& arguments)
     if (verb == Verb::reproduce) check_rivals(options, app);
     if (verb == Verb::dump) check_case(options, app);
     check_workload(verb, app);
+    check_axes(options);
     set_files(options, files);
     choose_default_views(options);
     options.words = {std::string(name_of(verb))};

@@ -87,6 +87,13 @@ struct ImagePixel {
     friend bool operator==(const ImagePixel&, const ImagePixel&) = default;
 };
 
+/// Of an image, in pixels.
+struct ImageSize {
+    std::uint32_t width = 0, height = 0;
+
+    friend bool operator==(const ImageSize&, const ImageSize&) = default;
+};
+
 /// A checked command line. Empty lists select by default (see rows.h); all other members hold their default.
 struct Options {
     Verb verb = Verb::help;
@@ -131,13 +138,15 @@ struct Options {
     std::optional<OwnCameras> own_cameras; ///< in place of camera_set
     std::string views;                     ///< as parse_views() takes it; empty: all of the set
     std::uint32_t width = 1024, height = 1024;
+    std::vector<ImageSize> sizes;    ///< of `bench`, if it measures several; width and height are the last
     std::optional<ImagePixel> pixel; ///< of `trace`, which needs it, and of a case of `dump`
     std::string defect;              ///< of `dump`: the reduced kernel that is written as a case; empty: none
 
-    unsigned threads = 0;           ///< 0: all that the process may use
-    unsigned tile_height = 0;       ///< 4 or 8; 0: see tile_height_of()
-    unsigned packet_lanes = 0;      ///< one of packet_widths; 0: the widest available
-    std::uint64_t buffer_limit = 0; ///< largest buffer of every device, in bytes; 0: unchanged
+    unsigned threads = 0;                ///< 0: all that the process may use; of several, the most
+    std::vector<unsigned> thread_counts; ///< of `bench`, if it measures several
+    unsigned tile_height = 0;            ///< 4 or 8; 0: see tile_height_of()
+    unsigned packet_lanes = 0;           ///< one of packet_widths; 0: the widest available
+    std::uint64_t buffer_limit = 0;      ///< largest buffer of every device, in bytes; 0: unchanged
     unsigned samples = 10;
     bool exact_samples = false; ///< whether noisy rows get no more
     unsigned runs = 1;          ///< of the measurement, each with sessions of its own

@@ -81,8 +81,8 @@ std::vector<OptionRow> output_options()
          sharing, false, set(&Options::resume)},
         {"Output", "--junit", "FILE",
          "Also write the result to FILE as JUnit XML, one test case per row; '-' means standard output, instead of "
-         "the table. 'merge' accepts it for shards of 'bench' and 'check'. Default: none.",
-         measuring | bit(Verb::merge), false, set_path("--junit", &Options::junit),
+         "the table. Default: none.",
+         sharing | bit(Verb::merge), false, set_path("--junit", &Options::junit),
          usual_for(bit(Verb::check) | bit(Verb::merge), "also as JUnit XML, a test case per row")},
     };
 }

@@ -14,12 +14,12 @@ namespace {
 
 using RowContest = Contest<RowRecord>;
 
-/// Of timed rows. Emulated devices are in none: they are not to be ranked.
+/// Of timed rows. Emulated devices are in none: they are not to be ranked. Nor are rows with fewer threads than others.
 std::vector<RowContest> ranked_contests(const BenchResult& result)
 {
     std::vector<const RowRecord*> ranked;
     for (const RowRecord& row : result.rows)
-        if (figures_of(row) && row.device.kind != DeviceKind::emulated) ranked.push_back(&row);
+        if (figures_of(row) && row.device.kind != DeviceKind::emulated && row.key.threads == 0) ranked.push_back(&row);
     return contests_of(ranked);
 }
 

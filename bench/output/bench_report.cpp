@@ -2,20 +2,43 @@
 
 #include "bench/measuring/budget.h"
 #include "bench/measuring/figures.h"
+#include "bench/output/axis_lines.h"
 #include "bench/output/brief.h"
 #include "bench/output/device_json.h"
 #include "bench/output/row_fields.h"
 #include "bench/output/score.h"
+#include "bench/rows/sized_scene.h"
 #include "bench/statistics/rank_interval.h"
 #include "bench/terminal/text.h"
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <set>
 
 namespace tetrace {
 
 namespace {
+
+/// "1024x1024": each size of the run once, in its order.
+std::vector<std::string> sizes_of(const BenchResult& result)
+{
+    std::vector<std::string> sizes;
+    for (const nlohmann::json& json : result.scenes) {
+        const ResultValue scene(json, "scene");
+        const std::string size = size_value(scene.at("width").count(), scene.at("height").count()).text;
+        if (std::ranges::find(sizes, size) == sizes.end()) sizes.push_back(size);
+    }
+    return sizes;
+}
+
+std::set<unsigned> threads_of(const BenchResult& result)
+{
+    std::set<unsigned> counts = {result.threads};
+    for (const RowRecord& row : result.rows)
+        if (row.key.threads != 0) counts.insert(row.key.threads);
+    return counts;
+}
 
 std::string timed_sentence(const BenchResult& result)
 {
@@ -40,9 +63,9 @@ std::string timed_sentence(const BenchResult& result)
         std::uint32_t passes = 1;
         for (const RowRecord& row : result.rows)
             passes = std::max(passes, row.passes);
-        text += fmt::format(" A sample is {} views of {} at {}x{} on {} threads, traced together{}.",
-                            scene.at("views").items().size(), scene.at("camera_set").line(), scene.at("width").count(),
-                            scene.at("height").count(), result.threads,
+        text += fmt::format(" A sample is {} views of {} at {} on {} threads, traced together{}.",
+                            scene.at("views").items().size(), scene.at("camera_set").line(),
+                            fmt::join(sizes_of(result), ", "), fmt::join(threads_of(result), ", "),
                             passes > 1 ? fmt::format(", up to {} times in turn", passes) : "");
     }
     return text + few;
@@ -88,7 +111,7 @@ std::string visits_sentences(const std::string& scene, const std::vector<RowReco
     std::string text;
     for (const RowRecord* row : rows_of(scene, rows)) {
         const Traced* result = traced(*row);
-        if (result == nullptr || result->visits.rays == 0) continue;
+        if (result == nullptr || result->visits.rays == 0 || row->key.threads != 0) continue;
         const auto rays = static_cast<double>(result->visits.rays);
         append_item(text, "; ",
                     fmt::format("{}: {:.1f} nodes and {:.1f} triangles per ray", kernel_title(row->key),
@@ -150,14 +173,6 @@ Sheet closing_lines(const BenchResult& result)
     return sheet;
 }
 
-/// Of a row whose scene could not be loaded only the beginning of the reason: standard error has had all of it.
-std::string failure_text(const RowRecord& row, Status status)
-{
-    std::string reason = reason_of(row);
-    if (row.device.name.empty()) reason = reason.substr(0, reason.find('\n'));
-    return fmt::format("{}: {}", name_of(status), reason);
-}
-
 nlohmann::json bench_json(const BenchResult& result, nlohmann::json section)
 {
     section["samples_a_row"] = result.measurement.samples * result.measurement.runs;
@@ -216,9 +231,10 @@ std::string scene_headline(const ResultValue& scene)
     const auto bvh = scene.find("bvh_build_s");
     const auto built = scene.find("build_s");
     const std::string name = scene.at("name").line(), pinned = text_of("pinned");
-    return fmt::format("{}: {} tets, {} occlusive + {} free faces, {}{} ({}){}\n", pinned.empty() ? name : pinned,
-                       with_commas(scene.at("tets").count()), with_commas(scene.at("occlusive_faces").count()),
-                       with_commas(scene.at("free_faces").count()), size ? size_text(size->count()) + ", " : "",
+    return fmt::format("{}: {} tets, {} occlusive + {} free faces, {}{} ({}){}\n",
+                       pinned.empty() ? name : pinned + size_in(name), with_commas(scene.at("tets").count()),
+                       with_commas(scene.at("occlusive_faces").count()), with_commas(scene.at("free_faces").count()),
+                       size ? size_text(size->count()) + ", " : "",
                        built ? "built in " + seconds_text(built->number()) : "stored", how,
                        bvh ? fmt::format(", its BVH in {}", seconds_text(bvh->number())) : "");
 }
@@ -234,46 +250,6 @@ std::string verdict_sentence(const std::vector<RowRecord>& rows)
         text += fmt::format(", {} right for the offset origins from which BVHs start", with_commas(sum.offset));
     return text + fmt::format(", {} settled, {} wrong, {} lost.", with_commas(sum.settled), with_commas(sum.wrong),
                               with_commas(sum.lost));
-}
-
-namespace {
-
-/// What reasons have in common that are told as one: of rows that --budget skips, all but the row's own time.
-std::string common_part(const std::string& reason)
-{
-    const std::size_t at = reason.find(with_budget);
-    return at == std::string::npos ? reason : reason.substr(at);
-}
-
-} // namespace
-
-Sheet failure_lines(const std::vector<RowRecord>& rows)
-{
-    struct Failure {
-        const RowRecord* first;
-        std::string what, common;
-        std::size_t count = 0;
-    };
-    std::vector<Failure> failures;
-    for (const RowRecord& row : rows) {
-        const Status status = status_of(row);
-        if (status == Status::ok || status == Status::flawed) continue;
-        const std::string what = failure_text(row, status);
-        const std::string common = common_part(what);
-        const auto same = std::ranges::find_if(failures, [&](const Failure& failure) {
-            const bool is_same_scene = failure.first->key.scene == row.key.scene;
-            return failure.common == common && (common != what || is_same_scene);
-        });
-        ++(same == failures.end() ? failures.emplace_back(Failure{&row, what, common}) : *same).count;
-    }
-    Sheet sheet;
-    for (const auto& [first, what, common, count] : failures) {
-        const std::string of_scene = common == what ? " of " + first->key.scene : "";
-        sheet.line(count == 1 ? fmt::format("{}: {}", row_name(first->key), what)
-                              : fmt::format("{} rows{}, such as {}: {}", count, of_scene, row_name(first->key), what));
-    }
-    if (!failures.empty()) sheet.gap();
-    return sheet;
 }
 
 Sheet bench_sheet(const BenchResult& result)
@@ -298,6 +274,15 @@ Sheet bench_sheet(const BenchResult& result)
         sheet.table(score_table(scores_of(workload, result.rows)));
         sheet.gap();
     }
+    const auto add_axis = [&](const std::string& heading, const Table& table) {
+        if (table.rows().empty()) return;
+        sheet.heading(heading);
+        sheet.gap();
+        sheet.table(table);
+        sheet.gap();
+    };
+    add_axis("rates by size, and the line through the smallest and the largest", size_table(size_lines(result)));
+    add_axis("rates by threads", thread_table(thread_lines(result)));
     if (is_timed(result)) {
         sheet.heading("where the time goes");
         sheet.gap();

@@ -46,8 +46,8 @@ struct BenchResult {
 /// The oracle's findings over all rows, in one sentence.
 [[nodiscard]] std::string verdict_sentence(const std::vector<RowRecord>& rows);
 
-/// Rows without an answer and their reasons, and an empty line: a line for all rows of a scene that have the same one,
-/// and one for all that --budget skipped.
+/// Rows without an answer and their reasons, and an empty line: a line for all faulty rows that have the same one, and
+/// one for all that are skipped or unsupported.
 [[nodiscard]] Sheet failure_lines(const std::vector<RowRecord>& rows);
 
 /// What a run found, in three lines: the fastest row of each scene; CDT compared with BVH, and each API with openmp;

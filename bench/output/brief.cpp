@@ -96,7 +96,7 @@ std::string compared_text(const BenchResult& result)
 {
     std::vector<const RowRecord*> ranked;
     for (const RowRecord& row : result.rows)
-        if (figures_of(row) && row.device.kind != DeviceKind::emulated) ranked.push_back(&row);
+        if (figures_of(row) && row.device.kind != DeviceKind::emulated && row.key.threads == 0) ranked.push_back(&row);
     const auto contests = contests_of(ranked);
     const std::string all = contests.size() > max_ratios ? means_text(contests) : ratios_text(contests);
     return all.empty() ? std::string() : "rate of the fastest walk over that of the fastest BVH: " + all + ".";

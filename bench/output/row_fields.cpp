@@ -231,6 +231,14 @@ std::vector<RowField> identity_fields()
          both([](const RowRecord& row) { return row.device.name.empty() ? json() : json(row.key.device); },
               [](RowRecord& row, const ResultValue& value) { row.key.device = value.count(); }),
          recorded("count")},
+        {"", "threads",
+         both([](const RowKey& key) { return key.threads == 0 ? json() : json(key.threads); },
+              [](RowKey& key, const ResultValue& value) {
+                  if (value.count() == 0 || value.count() > 4096) value.reject("is not a number of threads, 1 to 4096");
+                  key.threads = static_cast<unsigned>(value.count());
+              }),
+         recorded("count", optional, "host threads, if the run has others, too: `tetrace.threads` is the most"),
+         csv("threads")},
         {"", "rays", &RowKey::rays,
          recorded(R"({ "enum": ["primary", "shadow", "ao", "diffuse", "random"] })", required, "their kind"),
          csv("rays")},

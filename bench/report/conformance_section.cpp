@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace tetrace {
 
@@ -58,6 +60,31 @@ Html matrix_of(const ReportInput& input, std::size_t file, const std::string& sc
     return table.html();
 }
 
+/// What a check was expected to show, and whether it did; nothing for a result without expectations.
+Html expectations_of(const ResultFile& file, const std::string& letter)
+{
+    const auto expectations = file.section().find("expectations");
+    if (!expectations) return {};
+    HtmlTable table({{"result"}, {"what"}, {"device"}, {"expected"}, {"shown"}, {"judgement"}});
+    for (const ResultValue& one : expectations->at("deviations").items())
+        table.add({text(letter), text(one.at("name").line()), text(one.at("device").line()),
+                   text(one.at("expected").line()), text(one.at("shown").line()), badge(one.at("judgement").line())});
+    std::vector<std::string> files;
+    if (const auto names = expectations->find("files"))
+        for (const ResultValue& name : names->items())
+            files.push_back(name.line());
+    std::string sentence = files.empty() ? "Judged by expectations."
+                                         : fmt::format("Judged by the expectations of {}.", fmt::join(files, ", "));
+    if (table.empty()) sentence += " All is as expected.";
+    for (const ResultValue& implementation : expectations->at("unmentioned").items())
+        sentence += fmt::format(" None mentions {}, which is expected to conform.", implementation.line());
+    if (const auto unknown = expectations->find("unknown"))
+        for (const ResultValue& one : unknown->items())
+            sentence += " " + one.line() + ".";
+    const std::string title = letter.empty() ? "Expectations" : "Expectations · " + letter;
+    return heading(title) + note(sentence) + table.html();
+}
+
 /// Rows of `check` results that have more to report than their cell.
 Html reasons_of(const ReportInput& input)
 {
@@ -80,6 +107,8 @@ Section conformance_section(const ReportInput& input)
                     heading(with_letter(scene, file, input.files.size())) + matrix_of(input, file, scene, cells);
     }
     if (!matrices.empty()) section.content = note(how_to_read_matrices) + matrices;
+    for (std::size_t file = 0; file < input.files.size(); ++file)
+        section.content += expectations_of(input.files[file], file_letter(file, input.files.size()));
     section.content += reasons_of(input);
     return section;
 }

@@ -31,8 +31,9 @@ std::vector<StructureContest> structure_contests(const std::vector<RowGroup>& gr
     for (const RowGroup& group : groups) {
         if (group.kind == DeviceKind::emulated || group.rays != RayKind::primary) continue;
         for (auto& contest : contests_of(group.rows, [&](const ReportRow&a, const ReportRow&b) {
-                 return device_text(a, files) == device_text(b, files);
+                 return device_text(a, files) == device_text(b, files) && a.row->threads == b.row->threads;
              })) {
+            if (contest.rows.front()->row->threads > 0) continue; // those with the most answer for the others
             if (!std::ranges::all_of(contest.rows, [](const ReportRow* row) { return row->known_kernel.has_value(); }))
                 continue;
             const ReportRow *const walk = contest.fastest(Walk::any), *const bvh = contest.fastest(Rival::any);

@@ -192,8 +192,9 @@ std::string page_of(const Html& header, std::vector<Section> sections)
 std::string report_page(const ReportInput& input)
 {
     std::vector<Section> sections;
-    for (const auto make : {comparison_section, machine_section, rate_section, ratio_section, roofline_section,
-                            conformance_section, compiler_section, paper_section, picture_section, time_section})
+    for (const auto make :
+         {comparison_section, machine_section, rate_section, size_section, thread_section, ratio_section,
+          roofline_section, conformance_section, compiler_section, paper_section, picture_section, time_section})
         sections.push_back(make(input));
     return page_of(page_head(trust_lines(input) + comparison_summary(input), facts_of(input), headline(input)),
                    sections);

@@ -137,6 +137,8 @@ std::vector<ReportRow> report_rows(const ResultFile& result, std::size_t file)
         row.row = &result.rows[i];
         read_kernel(row, items[i]);
         row.api = result.rows[i].api();
+        if (const auto threads = result.rows[i].threads; threads > 0)
+            row.api += ", " + counted(threads, "thread", "threads");
         row.device = result.head.shown(result.rows[i].device);
         read_into(row.rays, items[i].at("rays"));
         read_shares(row, items[i]);

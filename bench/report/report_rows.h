@@ -29,7 +29,7 @@ struct ReportRow {
     /// Empty if this program lacks the kernel: a page shows results of other versions too. That is why its rows are not
     /// RowRecords, for which read_rows() rejects such a result.
     std::optional<KernelId> known_kernel;
-    std::string api; ///< "vulkan", "vulkan:1"
+    std::string api; ///< "vulkan", "vulkan:1", "openmp, 1 thread"
     RayKind rays = RayKind::primary;
     std::string device;                           ///< the row's, but of the processor the machine's name
     std::optional<double> enter_share, hit_share; ///< of its rays: that enter the domain, and that hit

@@ -54,9 +54,11 @@ struct ReportInput {
 [[nodiscard]] Section machine_section(const ReportInput& input);     ///< results, devices, scenes
 [[nodiscard]] Section conformance_section(const ReportInput& input); ///< the matrix of `check`
 [[nodiscard]] Section
-compiler_section(const ReportInput& input);                    ///< what compilers reported to `inspect` for each kernel
-[[nodiscard]] Section rate_section(const ReportInput& input);  ///< bars per scene, and rows without a rate
-[[nodiscard]] Section ratio_section(const ReportInput& input); ///< APIs compared with each other
+compiler_section(const ReportInput& input);                   ///< what compilers reported to `inspect` for each kernel
+[[nodiscard]] Section rate_section(const ReportInput& input); ///< bars per scene, and rows without a rate
+[[nodiscard]] Section size_section(const ReportInput& input); ///< rates by size, of `bench` with several sizes
+[[nodiscard]] Section thread_section(const ReportInput& input);   ///< the same of threads
+[[nodiscard]] Section ratio_section(const ReportInput& input);    ///< APIs compared with each other
 [[nodiscard]] Section roofline_section(const ReportInput& input); ///< every device with its rows
 [[nodiscard]] Section time_section(const ReportInput& input);     ///< where each row's time goes
 [[nodiscard]] Section paper_section(const ReportInput& input);    ///< tables and figures of `reproduce`

@@ -33,21 +33,26 @@ std::vector<RowKey> rows_of_fastest_walks(const Options& options, const std::str
     };
     const bool takes_method = narrow(of_walks.methods, std::vector{Method::project});
     const bool takes_layout = narrow(of_walks.layouts, std::vector{Layout::half32, Layout::tet64});
-    return takes_method && takes_layout ? select_rows(of_walks, {label}) : std::vector<RowKey>();
+    return takes_method && takes_layout ? unfiltered_rows(of_walks, {label}) : std::vector<RowKey>();
+}
+
+std::vector<RowKey> unfiltered_rows_of(const SceneBuild& build, const Options& options)
+{
+    if (build.methods && !build.rivals) return unfiltered_rows(options, {build.label});
+    Options of_cdt = options_of(Structure::cdt, options);
+    if (!build.methods) of_cdt.methods = {Method::maria};
+    auto rows = unfiltered_rows(of_cdt, {build.label});
+    const auto add = [&](std::vector<RowKey> others) { std::ranges::move(others, std::back_inserter(rows)); };
+    if (!build.methods && build.build == rays_build) add(rows_of_fastest_walks(options, build.label));
+    if (build.rivals) add(unfiltered_rows(options_of(Structure::bvh, options), {build.label}));
+    return rows;
 }
 
 } // namespace
 
 std::vector<RowKey> rows_of_build(const SceneBuild& build, const Options& options)
 {
-    if (build.methods && !build.rivals) return select_rows(options, {build.label});
-    Options of_cdt = options_of(Structure::cdt, options);
-    if (!build.methods) of_cdt.methods = {Method::maria};
-    auto rows = select_rows(of_cdt, {build.label});
-    const auto add = [&](std::vector<RowKey> others) { std::ranges::move(others, std::back_inserter(rows)); };
-    if (!build.methods && build.build == rays_build) add(rows_of_fastest_walks(options, build.label));
-    if (build.rivals) add(select_rows(options_of(Structure::bvh, options), {build.label}));
-    return rows;
+    return filtered_rows(options, unfiltered_rows_of(build, options));
 }
 
 bool is_for_rays(const SceneRun& run)

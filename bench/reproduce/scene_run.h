@@ -57,8 +57,8 @@ using SceneRuns = std::vector<const SceneRun*>;
 [[nodiscard]] SceneRuns runs_of_cdt(const SceneRuns& runs);
 
 /// The rows of a build. Where BVHs are traced as well as the CDT, the options' methods and layouts select only among
-/// the rows of their own structure; a structure for which none is named keeps all its rows. Throws Error{usage} as
-/// select_rows() does.
+/// the rows of their own structure; a structure for which none is named keeps all its rows. --filter may keep none.
+/// Throws Error{usage} as unfiltered_rows() does.
 [[nodiscard]] std::vector<RowKey> rows_of_build(const SceneBuild& build, const Options& options);
 
 /// How the scene's views were sampled from a camera set of `population` views, for images of the paper's size.

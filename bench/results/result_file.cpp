@@ -107,6 +107,7 @@ ResultRow read_any_row(const ResultValue& value)
         row.driver = line_or_nothing(*device, "driver");
         if (const auto index = value.find("device_index")) row.device_index = index->count();
     }
+    if (const auto threads = value.find("threads")) row.threads = threads->count();
     row.samples_s = read_samples(value);
     if (const auto times = value.find("times")) {
         if (const auto pulse = times->find("pulse")) row.pulse_ratio = pulse->number();

@@ -2,6 +2,7 @@
 
 #include "bench/measuring/comparison.h"
 #include "bench/measuring/figures.h"
+#include "bench/terminal/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -120,7 +121,7 @@ void add_missing_scenes(JudgedClaim& judged, const std::vector<const RivalContes
         judged.obstacles.emplace_back("no row of this run is on such a device, with such rays");
 }
 
-void add_left_out(JudgedClaim& judged, LeftOut left_out)
+void add_left_out(JudgedClaim& judged, const LeftOut& left_out)
 {
     const RivalClaim& claim = *judged.claim;
     if (left_out.kernels) {
@@ -134,6 +135,24 @@ void add_left_out(JudgedClaim& judged, LeftOut left_out)
             "--backend or --device left out an API of the GPU; one of its rows could be the fastest");
         judged.may_refute = false;
     }
+}
+
+/// Rows that the claim is about, and that --filter left out. One of them could be the fastest.
+void add_filtered(JudgedClaim& judged, const std::vector<RowKey>& filtered)
+{
+    const RivalClaim& claim = *judged.claim;
+    const RowKey* first = nullptr;
+    std::size_t count = 0;
+    for (const RowKey& key : filtered) {
+        const bool is_walk = is_of(key.kernel, claim.walk), is_rival = is_of(key.kernel, claim.rival);
+        const DeviceKind place = backend_named(key.backend).devices().at(key.device).kind;
+        if ((!is_walk && !is_rival) || !is_about(claim, {{}, key, place, {}})) continue;
+        if (count++ == 0) first = &key;
+        if (is_walk != wants_slow_walks(claim)) judged.may_refute = false;
+    }
+    if (count == 0) return;
+    judged.obstacles.push_back(fmt::format("--filter left out {} that it is about, such as {} for {}",
+                                           counted(count, "row", "rows"), row_label(*first), rays_title(*first)));
 }
 
 /// The measure such that more of it speaks for the claim.
@@ -221,7 +240,7 @@ Estimate rate_ratio(const RowRecord& row, const RowRecord& over)
     return estimate;
 }
 
-JudgedClaim judge(const RivalClaim& claim, const std::vector<RivalContest>& contests, LeftOut left_out)
+JudgedClaim judge(const RivalClaim& claim, const std::vector<RivalContest>& contests, const LeftOut& left_out)
 {
     JudgedClaim judged;
     judged.claim = &claim;
@@ -229,6 +248,7 @@ JudgedClaim judge(const RivalClaim& claim, const std::vector<RivalContest>& cont
     for (const RivalContest& contest : contests)
         if (is_about(claim, contest)) about.push_back(&contest);
     add_missing_scenes(judged, about);
+    add_filtered(judged, left_out.filtered);
     for (const RivalContest* contest : about)
         add_contest(judged, *contest);
     if (!judged.numbers.empty()) add_left_out(judged, left_out);

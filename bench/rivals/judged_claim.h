@@ -55,15 +55,17 @@ struct JudgedClaim {
 
 /// What options left out of a run: one of those rows could be the fastest.
 struct LeftOut {
-    bool kernels = false; ///< of any device
-    bool apis = false;    ///< APIs of a GPU that has rows of another API
+    bool kernels = false;              ///< of any device
+    bool apis = false;                 ///< APIs of a GPU that has rows of another API
+    std::vector<RowKey> filtered = {}; ///< rows that --filter left out
 };
 
 /// Judges a claim by the contests that it is about. It holds only if every number's interval is on the right side of
 /// the boundary and there is no obstacle: a rival without a rate could be the fastest, and a noisy row decides nothing.
 /// One number whose interval is on the wrong side refutes it, unless one of its two rows is noisy, or a row is missing
 /// that could put it on the right side. Scenes that were not traced are named, and the others decide.
-[[nodiscard]] JudgedClaim judge(const RivalClaim& claim, const std::vector<RivalContest>& contests, LeftOut left_out);
+[[nodiscard]] JudgedClaim judge(const RivalClaim& claim, const std::vector<RivalContest>& contests,
+                                const LeftOut& left_out);
 
 /// "0.91 [0.90, 0.92]"; seconds end in their unit, and infinite ones are "never".
 [[nodiscard]] std::string number_text(const RivalClaim& claim, const Estimate& value);

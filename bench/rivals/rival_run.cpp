@@ -5,6 +5,7 @@
 #include "bench/measuring/scene_rows.h"
 #include "bench/rivals/rival_claims.h"
 #include "bench/rows/physical_device.h"
+#include "bench/rows/sized_scene.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -197,7 +198,7 @@ PaperTable rows_table(const std::vector<RivalContest>& contests)
 
 } // namespace
 
-PaperTable claims_table(const std::vector<RivalContest>& contests, LeftOut left_out,
+PaperTable claims_table(const std::vector<RivalContest>& contests, const LeftOut& left_out,
                         const std::vector<RivalClaim>& claims)
 {
     std::map<DeviceKind, std::vector<Claim>> by_place;
@@ -222,7 +223,7 @@ PaperTable claims_table(const std::vector<RivalContest>& contests, LeftOut left_
 }
 
 std::vector<PaperTable> rival_tables(const std::vector<RowRecord>& rows, const std::vector<ContestScene>& scenes,
-                                     LeftOut left_out)
+                                     const LeftOut& left_out)
 {
     const auto contests = rival_contests(rows, scenes);
     return {claims_table(contests, left_out), scenes_table(contests), rows_table(contests)};
@@ -285,17 +286,29 @@ Options rival_options(Options options, std::vector<std::string>& missing)
     return options;
 }
 
-std::vector<RowKey> rival_rows(const Options& options)
+namespace {
+
+std::vector<RowKey> unfiltered_rival_rows(const Options& options)
 {
     Options selecting = options;
     selecting.verb = Verb::bench; // whose defaults have packets
     selecting.rays = values_of<RayKind>();
     std::vector<RowKey> rows;
-    for (const RowKey& key : selected_rows(selecting, [](const std::string&) { return true; }))
+    for (const RowKey& key : unfiltered_rows(selecting, scene_labels(selecting)))
         if (is_wanted(key, options)) {
             rows.push_back(key);
             add_native(rows, key);
         }
+    return rows;
+}
+
+} // namespace
+
+std::vector<RowKey> rival_rows(const Options& options)
+{
+    const auto unfiltered = unfiltered_rival_rows(options);
+    auto rows = filtered_rows(options, unfiltered);
+    require_rows(options, rows, unfiltered);
     return rows;
 }
 
@@ -318,6 +331,10 @@ LeftOut left_out(const Options& options, const std::vector<Backend*>& backends)
     for (std::size_t i = 0; i < gpus.size(); ++i)
         for (std::size_t j = 0; j < gpus.size(); ++j)
             if (hardware[i] == hardware[j] && is_kept[i] && !is_kept[j]) left_out.apis = true;
+    if (options.filter.empty()) return left_out;
+    const auto kept = rival_rows(options);
+    for (RowKey& key : unfiltered_rival_rows(options))
+        if (std::ranges::find(kept, key) == kept.end()) left_out.filtered.push_back(std::move(key));
     return left_out;
 }
 

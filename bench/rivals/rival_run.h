@@ -16,10 +16,10 @@ namespace tetrace {
 ///   walks to BVHs;
 /// - rivals-rows: every row with its rate and its ratio to the fastest BVH of the same contest.
 [[nodiscard]] std::vector<PaperTable> rival_tables(const std::vector<RowRecord>& rows,
-                                                   const std::vector<ContestScene>& scenes, LeftOut left_out);
+                                                   const std::vector<ContestScene>& scenes, const LeftOut& left_out);
 
 /// The first of them.
-[[nodiscard]] PaperTable claims_table(const std::vector<RivalContest>& contests, LeftOut left_out,
+[[nodiscard]] PaperTable claims_table(const std::vector<RivalContest>& contests, const LeftOut& left_out,
                                       const std::vector<RivalClaim>& claims = rival_claims());
 
 /// The options of `reproduce rivals` with its scenes, unless some are named: those of rival_scenes() that are available
@@ -30,8 +30,8 @@ namespace tetrace {
 /// not listed has diffuse and random rays. On openmp each kernel of one ray at a time also has its form for AVX2
 /// (schedule native). Emulated devices have only primary rays, on scenes with all kinds of rays and on those that are
 /// not listed, and so do Embree's trees of other qualities than high unless --layout names them. Unless --method names
-/// it, maria has one layout and only primary rays, and none on emulated devices. Throws Error{usage} as selected_rows()
-/// does.
+/// it, maria has one layout and only primary rays, and none on emulated devices. --filter then keeps those whose names
+/// match. Throws Error{usage} as select_rows() does.
 [[nodiscard]] std::vector<RowKey> rival_rows(const Options& options);
 
 /// What the options leave out of such a run.

@@ -137,6 +137,15 @@ bool wanted_there(const Options& options, const Backend& backend, std::size_t de
     return backend.devices()[device].kind != DeviceKind::emulated && backend.why_not(device, kernel).empty();
 }
 
+/// Of rows on the device: 0 is those of the whole run, the most of all numbers asked for. Only a processor has several.
+std::vector<unsigned> wanted_threads(const Options& options, const Device& device)
+{
+    if (options.thread_counts.empty() || device.kind != DeviceKind::cpu) return {0};
+    std::vector<unsigned> counts = options.thread_counts;
+    counts.back() = 0;
+    return counts;
+}
+
 void add_rows(std::vector<RowKey>& rows, const Options& options, RowKey key, const Backend& backend)
 {
     key.backend = backend.name();
@@ -145,7 +154,10 @@ void add_rows(std::vector<RowKey>& rows, const Options& options, RowKey key, con
         for (const TetOrder order : wanted_orders(options, key.kernel)) {
             key.device = device;
             key.order = order;
-            if (std::ranges::find(rows, key) == rows.end()) rows.push_back(key);
+            for (const unsigned threads : wanted_threads(options, backend.devices()[device])) {
+                key.threads = threads;
+                if (std::ranges::find(rows, key) == rows.end()) rows.push_back(key);
+            }
         }
     }
 }
@@ -394,18 +406,36 @@ std::string row_label(const RowKey& key)
     return kernel_title(key) + " on " + device_label(key);
 }
 
+std::vector<RowKey> unfiltered_rows(const Options& options, const std::vector<std::string>& scene_labels,
+                                    const std::vector<Backend*>& backends)
+{
+    require_named_devices(options, backends);
+    std::vector<RowKey> rows;
+    for (const std::string& scene : scene_labels)
+        for (const RowKey& key : rows_of_kinds(options, scene, backends))
+            rows.push_back(key);
+    if (rows.empty()) reject_selection(options, rows);
+    return rows;
+}
+
+std::vector<RowKey> filtered_rows(const Options& options, std::vector<RowKey> rows)
+{
+    const NameFilter filter("--filter", options.filter);
+    std::erase_if(rows, [&](const RowKey& key) { return !filter.keeps(row_name(key)); });
+    return rows;
+}
+
+void require_rows(const Options& options, const std::vector<RowKey>& rows, const std::vector<RowKey>& unfiltered)
+{
+    if (rows.empty()) reject_selection(options, unfiltered);
+}
+
 std::vector<RowKey> select_rows(const Options& options, const std::vector<std::string>& scene_labels,
                                 const std::vector<Backend*>& backends)
 {
-    require_named_devices(options, backends);
-    std::vector<RowKey> unfiltered, rows;
-    for (const std::string& scene : scene_labels)
-        for (const RowKey& key : rows_of_kinds(options, scene, backends))
-            unfiltered.push_back(key);
-    const NameFilter filter("--filter", options.filter);
-    for (const RowKey& key : unfiltered)
-        if (filter.keeps(row_name(key))) rows.push_back(key);
-    if (rows.empty()) reject_selection(options, unfiltered);
+    const auto unfiltered = unfiltered_rows(options, scene_labels, backends);
+    auto rows = filtered_rows(options, unfiltered);
+    require_rows(options, rows, unfiltered);
     return rows;
 }
 
@@ -423,7 +453,7 @@ std::vector<RowKey> select_search_rows(const Options& options, const std::vector
         rows.push_back(key);
     }
     if (rows.empty()) reject_selection(options, rows);
-    return rows;
+    return filtered_rows(options, std::move(rows));
 }
 
 } // namespace tetrace

@@ -12,7 +12,7 @@ namespace tetrace {
 
 /// One combination to measure; its name is its key in every result.
 struct RowKey {
-    std::string scene;   ///< label, see scene_label()
+    std::string scene;   ///< label, see scene_label(); with its size if there are several, see SizedScene
     std::string backend; ///< name, see all_backends()
     KernelId kernel;
     RayKind rays = RayKind::primary;
@@ -44,7 +44,7 @@ struct RowKey {
 /// no counts. Rows of another order than chains have "order:hilbert" and the like before the api. Rows of another
 /// schedule than tiles have "schedule:persistent". Rows whose given rays come in another order than that of tiles have
 /// "rays:morton". Rows of a backend's later devices end in the device's index, "api:opencl:1". Rows of task search have
-/// no rays: theirs are given.
+/// no rays: theirs are given. Rows with other threads than the whole run end in "/threads:1".
 [[nodiscard]] std::string row_name(const RowKey& key);
 
 /// The kernel of these names, as results have them; empty if this tetrace has none.
@@ -73,10 +73,19 @@ struct RowKey {
 [[nodiscard]] std::vector<RowKey> select_rows(const Options& options, const std::vector<std::string>& scene_labels,
                                               const std::vector<Backend*>& backends = all_backends());
 
+/// The same without --filter, which only decides whether there are rows of layout rt.
+[[nodiscard]] std::vector<RowKey> unfiltered_rows(const Options& options, const std::vector<std::string>& scene_labels,
+                                                  const std::vector<Backend*>& backends = all_backends());
+/// Those that --filter keeps, perhaps none.
+[[nodiscard]] std::vector<RowKey> filtered_rows(const Options& options, std::vector<RowKey> rows);
+/// Throws Error{usage} as select_rows() does if no row is left of the unfiltered ones.
+void require_rows(const Options& options, const std::vector<RowKey>& rows, const std::vector<RowKey>& unfiltered);
+
 /// The scene name of rows of task search: the tets of core/rays/search_set.h.
 inline constexpr const char* search_scene = "random-tets";
 
-/// The rows of task search, selected in the same way; openmp has an extra row first, on one thread.
+/// The rows of task search, selected in the same way, but --filter may keep none; openmp has an extra row first, on one
+/// thread.
 [[nodiscard]] std::vector<RowKey> select_search_rows(const Options& options,
                                                      const std::vector<Backend*>& backends = all_backends());
 

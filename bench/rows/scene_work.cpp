@@ -105,6 +105,13 @@ SceneWork load_work(const SceneRequest& request, const Options& options, const s
     return {std::move(loaded), options, scene_arguments(request, options)};
 }
 
+SceneWork resized(const SceneWork& scene, const SceneRequest& request, const Options& options, const std::string& label)
+{
+    LoadedScene loaded = scene.loaded();
+    loaded.scene.name = label;
+    return {std::move(loaded), options, scene_arguments(request, options)};
+}
+
 std::vector<std::string> missing_default_scenes(const Options& options)
 {
     std::vector<std::string> reasons;

@@ -114,6 +114,10 @@ private:
 /// Throws what load_scene() throws.
 [[nodiscard]] SceneWork load_work(const SceneRequest& request, const Options& options, const std::string& label = {});
 
+/// The same scene with the images of other options. label: its name in rows.
+[[nodiscard]] SceneWork resized(const SceneWork& scene, const SceneRequest& request, const Options& options,
+                                const std::string& label);
+
 /// Default scenes that are not available here, and how to get them, one sentence each; empty where scenes were named.
 [[nodiscard]] std::vector<std::string> missing_default_scenes(const Options& options);
 

@@ -85,8 +85,8 @@ int bench(const Options& options, const BenchmarkFlags& flags, const std::vector
     Report report = bench_report(result, options, result_head(options));
     if (options.junit && !prints_junit(options)) report.sheet.labelled("JUnit", options.junit->string());
     // Google Benchmark has already written its own format to standard output, if it was asked to.
-    if (!flags.format && !prints_junit(options))
-        deliver(options, report);
+    if (!flags.format)
+        deliver_besides_junit(options, report);
     else if (options.out)
         deliver_to_file(options, report);
     if (result.interrupted) return end_interrupted();

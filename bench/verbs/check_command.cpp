@@ -51,7 +51,8 @@ nlohmann::json check_json(const Checked& checked, const Options& options)
     section["missing_devices"] = checked.missing;
     set_verdict(section, verdict_of(checked, options));
     if (checked.expectations && !is_interrupted())
-        set_expectations(section, checked.judgement.deviations, unmentioned_of(checked.judgement));
+        set_expectations(section, *checked.expectations, checked.judgement.deviations,
+                         unmentioned_of(checked.judgement), unknown_of(checked.judgement));
     return {{"tetrace", std::move(section)}};
 }
 
@@ -159,10 +160,7 @@ int check(const Options& options, Checked& checked)
     if (journal != nullptr) say_how_to_go_on(options);
     verify_all(keys, options, journal.get(), checked);
     const auto written = write_expectations(checked, options);
-    if (!prints_junit(options))
-        deliver(options, check_report(checked, written, options));
-    else if (options.out)
-        deliver_to_file(options, check_report(checked, written, options));
+    deliver_besides_junit(options, check_report(checked, written, options));
     if (is_interrupted()) return end_interrupted();
     end_journal(journal.get(), options);
     require_judged(checked.rows, checked.judgement, options.required);
@@ -218,6 +216,14 @@ void write_junit(const std::vector<RowRecord>& rows, const CheckJudgement& judge
         print(xml);
     else
         write_whole(*options.junit, xml);
+}
+
+void deliver_besides_junit(const Options& options, const Report& report)
+{
+    if (!prints_junit(options))
+        deliver(options, report);
+    else if (options.out)
+        deliver_to_file(options, report);
 }
 
 int with_junit(const std::vector<RowRecord>& rows, const CheckJudgement& judgement, const Options& options,

@@ -59,6 +59,8 @@ void require_selected(const std::vector<RowKey>& keys, const Options& options);
 /// fails although no row does; empty where neither is so.
 void write_junit(const std::vector<RowRecord>& rows, const CheckJudgement& judgement, const Options& options,
                  const std::string& problem = {});
+/// Delivers a report, but not to standard output if that is for --junit.
+void deliver_besides_junit(const Options& options, const Report& report);
 /// Does a verb's work, whose exit code it returns, and writes the file of --junit, also if the work ends early: whoever
 /// reads only the XML must not take a run without a result for a good one. rows, judgement: filled by the work.
 int with_junit(const std::vector<RowRecord>& rows, const CheckJudgement& judgement, const Options& options,

@@ -163,27 +163,29 @@ Merged merged_reproduction(const Shards& shards, const Options& asked)
     all.missing_scenes = sentences_of(shards, "missing_scenes");
     all.missing_devices = sentences_of(shards, "missing_devices");
     all.devices = read_devices(shards.front().result, {});
-    const auto builds = scene_builds(options);
+    auto builds = scene_builds(options);
     std::vector<RowRecord> rows = rows_of_shards(shards);
     require_scenes(builds, rows);
+    std::erase_if(builds, [&](const SceneBuild& build) { return rows_of(build.label, rows).empty(); });
     Journal journal(merged_entries(shards));
     for (const SceneBuild& build : builds)
         add_scene(all, build, options, rows, journal);
-    if (wants(options, PaperTarget::table5)) {
-        SearchRun& run = all.searches.emplace(recorded_search_run(options, rows_of_shards(shards, true)));
+    if (const auto searches = rows_of_shards(shards, true); !searches.empty()) {
+        SearchRun& run = all.searches.emplace(recorded_search_run(options, searches));
         run_searches(run, options, {&journal, &all.progress});
     }
     make_tables(all, options);
     Report report = reproduction_report(all, options);
     set_origin(report.json["tetrace"], shards);
-    return {std::move(report), rows_exit_code(all), error_of([&] { require_any_answer(all); })};
+    const auto merged = all_rows(all);
+    write_junit(merged, judge_answers(merged), options);
+    return {std::move(report), exit_code(merged, true), error_of([&] { require_answers(merged, "measured"); })};
 }
 
 Merged merged_run(const Shards& shards, const Options& options)
 {
     if (options.verb == Verb::bench) return merged_bench(shards, options);
     if (options.verb == Verb::check) return merged_check(shards, options);
-    if (options.junit) throw Error(ErrorKind::usage, "--junit: these shards are of 'reproduce', which has no JUnit");
     return merged_reproduction(shards, options);
 }
 
@@ -199,10 +201,7 @@ int merge_command(const Options& asked)
     Sheet more = machines_sheet(merged.report.json["tetrace"]["merged"]);
     merged.report.sheet.append(more);
     if (!merged.report.markdown.empty()) merged.report.markdown += more.markdown();
-    if (!prints_junit(options))
-        deliver(options, merged.report);
-    else if (options.out)
-        deliver_to_file(options, merged.report);
+    deliver_besides_junit(options, merged.report);
     if (merged.error) throw *merged.error;
     return merged.code;
 }

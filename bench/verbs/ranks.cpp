@@ -220,8 +220,11 @@ std::string command_for(const Shard& shard, const fs::path& all, const Options& 
 {
     constexpr std::string_view replaced[] = {"--out", "--format", "--wait", "--resume", "--threads"};
     std::vector<std::string> words = without_options(options.words, replaced);
-    words.insert(words.end(), {"--threads", std::to_string(resolved_threads(options)), "--shard", text_of(shard),
-                               "--out", shard_file(all, shard).string()});
+    const std::string threads = options.thread_counts.empty()
+                                    ? std::to_string(resolved_threads(options))
+                                    : fmt::format("{}", fmt::join(options.thread_counts, ","));
+    words.insert(words.end(),
+                 {"--threads", threads, "--shard", text_of(shard), "--out", shard_file(all, shard).string()});
     if (options.verb == Verb::reproduce) words.emplace_back("--resume");
     return command_of(words);
 }

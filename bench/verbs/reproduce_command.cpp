@@ -16,23 +16,24 @@ namespace {
 
 using nlohmann::json;
 
-/// None if the shard is without views.
+/// Those with rows; none if the shard is without views.
 std::vector<SceneBuild> builds_of_shard(const Options& options)
 {
     if (selected_views(options).empty()) return {};
     auto builds = scene_builds(options);
     check_labels(builds);
+    std::erase_if(builds, [&](const SceneBuild& build) { return rows_of_build(build, options).empty(); });
     return builds;
 }
 
 bool searches_of_shard(const Options& options)
 {
-    return shard_of(options).share(batch_count(options.searches)) > 0;
+    return wants(options, PaperTarget::table5) && shard_of(options).share(batch_count(options.searches)) > 0 &&
+           !select_search_rows(options).empty();
 }
 
-std::size_t parts_of(const std::vector<SceneBuild>& builds, const Options& options)
+std::size_t parts_of(const std::vector<SceneBuild>& builds, const Options& options, bool searches)
 {
-    const bool searches = wants(options, PaperTarget::table5);
     return builds.size() * selected_views(options).size() +
            (searches ? shard_of(options).share(batch_count(options.searches)) : 0);
 }
@@ -121,8 +122,34 @@ void run_all_searches(Reproduction& all, const Options& options, Keeping& keepin
     add_devices(all, run, options, keeping.yardsticks);
 }
 
+/// The rows that there would be without --filter.
+std::vector<RowKey> unfiltered_rows_of_run(Options options)
+{
+    options.filter.clear();
+    return rows_of_run(scene_builds(options), options);
+}
+
+/// What a run measured, also if it then ends early.
+struct JudgedRows {
+    std::vector<RowRecord> rows;
+    CheckJudgement judgement;
+
+    void set(std::vector<RowRecord> measured)
+    {
+        rows = std::move(measured);
+        judgement = judge_answers(rows);
+    }
+    /// Of a run that did not end early.
+    [[nodiscard]] int exit_code(const Options& options) const
+    {
+        require_judged(rows, judgement, options.required);
+        require_answers(rows, "measured");
+        return tetrace::exit_code(rows, true);
+    }
+};
+
 /// A run of `bench` over the scenes and rows of the claims, which are then judged.
-int reproduce_rivals(const Options& asked)
+int reproduce_rivals(const Options& asked, JudgedRows& judged)
 {
     check_output(asked);
     std::vector<std::string> missing;
@@ -130,32 +157,29 @@ int reproduce_rivals(const Options& asked)
     const Options options = rival_options(asked, missing);
     for (const std::string& sentence : missing)
         say(sentence);
-    const StopWhenInterrupted stop;
     const auto rows = rival_rows(options);
     require_selected(rows, options);
     const auto journal = open_journal(options, run_head(options, rows));
     BenchResult result = run_bench(rows, options, read_benchmark_flags({}), journal.get());
     result.missing_scenes = missing;
     const auto tables = rival_tables(result.rows, contest_scenes(result.scenes), left_out(options));
-    deliver(options, rival_report(result, tables, options));
+    judged.set(result.rows);
+    deliver_besides_junit(options, rival_report(result, tables, options));
     if (result.interrupted) return end_interrupted();
     end_journal(journal.get(), options);
-    require_judged(result.rows, judge_answers(result.rows), options.required);
-    require_answers(result.rows, "measured");
-    return exit_code(result.rows, true);
+    return judged.exit_code(options);
 }
 
-} // namespace
-
-int reproduce_command(const Options& asked)
+int reproduce_paper(const Options& asked, JudgedRows& judged)
 {
-    if (wants(asked, PaperTarget::rivals)) return reproduce_rivals(asked);
     require_devices(asked.required);
     Reproduction all;
     const Options options = with_defaults(asked, all.missing_scenes);
     check_output(options);
     const auto builds = builds_of_shard(options);
-    const bool searches = wants(options, PaperTarget::table5) && searches_of_shard(options);
+    const bool searches = searches_of_shard(options);
+    if (builds.empty() && !searches && !options.filter.empty())
+        require_rows(options, {}, unfiltered_rows_of_run(options));
     if (builds.empty() && !searches)
         throw Error(ErrorKind::usage, fmt::format("--shard {}: this shard would be empty: neither a view nor a "
                                                   "batch of searches",
@@ -165,8 +189,7 @@ int reproduce_command(const Options& asked)
     Keeping keeping(options, builds);
     for (const std::string& sentence : all.missing_scenes)
         say(sentence);
-    all.progress.all = parts_of(builds, options);
-    const StopWhenInterrupted stop;
+    all.progress.all = parts_of(builds, options, searches);
     double left_s = options.budget_s;
     for (std::size_t i = 0; i < builds.size(); ++i) {
         if (is_interrupted()) break;
@@ -177,17 +200,23 @@ int reproduce_command(const Options& asked)
     if (searches && !is_interrupted()) run_all_searches(all, options, keeping);
     judge_steadiness(all, keeping.watch);
     make_tables(all, options);
-    deliver(options, reproduction_report(all, options));
+    judged.set(all_rows(all));
+    deliver_besides_junit(options, reproduction_report(all, options));
     if (is_interrupted()) return end_interrupted();
     end_journal(keeping.journal.get(), options);
-    const auto require_of = [&](const std::vector<RowRecord>& rows) {
-        require_judged(rows, judge_answers(rows), options.required);
-    };
-    for (const SceneRun& run : all.runs)
-        require_of(records_of(run.rows));
-    if (all.searches) require_of(records_of(all.searches->rows));
-    require_any_answer(all);
-    return rows_exit_code(all);
+    return judged.exit_code(options);
+}
+
+} // namespace
+
+int reproduce_command(const Options& options)
+{
+    const StopWhenInterrupted stop;
+    JudgedRows judged;
+    return with_junit(judged.rows, judged.judgement, options, [&] {
+        return wants(options, PaperTarget::rivals) ? reproduce_rivals(options, judged)
+                                                   : reproduce_paper(options, judged);
+    });
 }
 
 } // namespace tetrace

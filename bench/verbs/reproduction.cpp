@@ -6,6 +6,7 @@
 #include "bench/reproduce/tables/recorded_tables.h"
 #include "bench/reproduce/tables/tables.h"
 #include "bench/terminal/interrupts.h"
+#include "bench/verbs/commands.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -80,6 +81,12 @@ std::string trust_of(const Reproduction& all)
         for (const RowRun& row : all.searches->rows)
             steadiness.count(row);
     return steadiness.timed == 0 || steadiness.pulses.empty() ? std::string() : trust_text(steadiness);
+}
+
+void add_files(Report& report, const Options& options)
+{
+    if (options.junit && !prints_junit(options)) report.sheet.labelled("JUnit", options.junit->string());
+    if (options.out) report.sheet.labelled("Result", options.out->string());
 }
 
 } // namespace
@@ -157,7 +164,7 @@ Report rival_report(const BenchResult& result, const std::vector<PaperTable>& ta
                   tables_markdown(all)};
     for (const PaperTable& table : tables)
         report.json["tetrace"]["tables"].push_back(table_json(table));
-    if (options.out) report.sheet.labelled("Result", options.out->string());
+    add_files(report, options);
     return report;
 }
 
@@ -167,7 +174,7 @@ Report reproduction_report(const Reproduction& all, const Options& options)
                                all.missing_devices, trust_of(all), is_interrupted()};
     Report report{tables_sheet(shown), tidy_table(all.tables, all.figures), reproduction_json(all, options),
                   tables_markdown(shown)};
-    if (options.out) report.sheet.labelled("Result", options.out->string());
+    add_files(report, options);
     return report;
 }
 
@@ -179,24 +186,17 @@ void judge_steadiness(Reproduction& all, MachineWatch& watch)
     if (all.searches) watch.pulses().judge_rows(all.searches->rows, all.steadiness.load);
 }
 
-void require_any_answer(const Reproduction& all)
+std::vector<RowRecord> all_rows(const Reproduction& all)
 {
-    std::vector<const RowRecord*> rows;
+    std::vector<RowRecord> rows;
+    const auto add = [&](const std::vector<RowRun>& runs) {
+        for (const RowRun& row : runs)
+            rows.push_back(record_of(row));
+    };
     for (const SceneRun& run : all.runs)
-        for (const RowRun& row : run.rows)
-            rows.push_back(&row);
-    if (all.searches)
-        for (const RowRun& row : all.searches->rows)
-            rows.push_back(&row);
-    require_answers(rows, "measured");
-}
-
-int rows_exit_code(const Reproduction& all)
-{
-    int code = all.searches ? exit_code(records_of(all.searches->rows), true) : 0;
-    for (const SceneRun& run : all.runs)
-        code = code == 1 ? code : std::max(code, exit_code(records_of(run.rows), true));
-    return code;
+        add(run.rows);
+    if (all.searches) add(all.searches->rows);
+    return rows;
 }
 
 namespace {

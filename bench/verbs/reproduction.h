@@ -45,11 +45,8 @@ void make_tables(Reproduction& all, const Options& options);
 /// watched.
 void judge_steadiness(Reproduction& all, MachineWatch& watch);
 
-/// Throws Error{missing} as bench and check do where no row of any scene or search could run here.
-void require_any_answer(const Reproduction& all);
-
-/// The exit code for what rows came to.
-[[nodiscard]] int rows_exit_code(const Reproduction& all);
+/// The rows of all scenes, then those of searches.
+[[nodiscard]] std::vector<RowRecord> all_rows(const Reproduction& all);
 
 /// Whether `reproduce` is asked for the table or figure.
 [[nodiscard]] bool wants(const Options& options, PaperTarget target);

@@ -132,6 +132,9 @@ TEST_F(ExpectationFiles, have_one_implementation_by_their_name_or_several_and_th
     const Expectations both = read_expectations({folder_ / "one", folder_ / "all.json"});
     EXPECT_EQ(both.at(driver).rows.at("tiles"), Finding::error);
     EXPECT_EQ(both.at("other-3").defects.at("loop"), DefectFinding::wrong);
+    Json section;
+    set_expectations(section, both, {}, {});
+    EXPECT_EQ(section["expectations"]["files"], Json({(folder_ / "all.json").string()})) << "which counts for both";
 }
 
 TEST_F(ExpectationFiles, keep_what_a_run_says_nothing_about)
@@ -255,6 +258,27 @@ TEST(CheckJudgement, of_a_required_row_that_is_expected_to_be_unsupported_passes
     EXPECT_EQ(text(Json::object()), "FAILED    1 row without a result in 2 rows on 1 device.\n");
     EXPECT_EQ(text({{"rows", {{"tiles", "bit-exact"}}}}), "FAILED    1 new failure in 2 rows on 1 device.\n");
     EXPECT_EQ(verdict(rows, expecting(Json::object())), "Conforms  1 row on 1 device; 1 more has no result.\n");
+}
+
+TEST(CheckJudgement, reports_names_and_self_tests_that_the_run_cannot_have)
+{
+    RowRecord untested = good_row();
+    untested.self_test.reset();
+    const Expectations expectations = expecting({{"self_test", {{"exact", true}}},
+                                                 {"exceptions",
+                                                  {{"cdt/maria/tet80", "bit-exact"},
+                                                   {"banana/cdt/maria/tet80/shadow", "wrong"},
+                                                   {"cdt/maria/tet80/packets", "wrong"},
+                                                   {"cdt/marja/tet80", "wrong"}}}});
+    const auto unknown = unknown_of(judge_rows({untested, untested}, &expectations, false));
+    ASSERT_EQ(unknown.size(), 3u);
+    EXPECT_TRUE(contains(unknown[0], "cdt/maria/tet80/packets: no row of vulkan has this name")) << unknown[0];
+    EXPECT_TRUE(contains(unknown[1], "cdt/marja/tet80: no row of vulkan has this name")) << unknown[1];
+    EXPECT_TRUE(contains(unknown[2], "self_test: no row of this run on vulkan has one")) << unknown[2];
+    EXPECT_EQ(unknown_of(judge_rows({good_row()}, &expectations, false)).size(), 2u);
+    Json section;
+    set_expectations(section, expectations, {}, {}, unknown);
+    EXPECT_TRUE(contains(expectation_lines(ResultValue(section, "r.json")).text(), "cdt/marja/tet80"));
 }
 
 TEST(CheckJudgement, reports_implementations_that_no_file_mentions_once)

@@ -154,6 +154,26 @@ TEST_F(ReportPage, what_is_wrong_leads_to_its_row_and_the_reason)
     EXPECT_TRUE(contains(section_of(page, "answer"), "0 of 1 rows of check are right. " + link + "1 is wrong"));
 }
 
+TEST_F(ReportPage, what_a_check_was_expected_to_show_is_a_table_and_none_without_expectations)
+{
+    json checked = check_json();
+    EXPECT_FALSE(contains(page_of({checked}), "Expectations"));
+    json& expectations = checked["tetrace"]["expectations"];
+    expectations = {{"files", {"drivers.json"}}, {"deviations", json::array()}, {"unmentioned", json::array()}};
+    EXPECT_TRUE(contains(section_of(page_of({checked}), "conformance"),
+                         "Judged by the expectations of drivers.json. All is as expected."));
+    expectations["deviations"].push_back({{"name", "row/vulkan"},
+                                          {"device", "vulkan"},
+                                          {"judgement", "unexpected pass"},
+                                          {"expected", "wrong"},
+                                          {"shown", "bit-exact"}});
+    expectations["unmentioned"].push_back("openmp");
+    const std::string section = section_of(page_of({checked}), "conformance");
+    EXPECT_TRUE(contains(section, "<td>row/vulkan</td><td>vulkan</td><td>wrong</td><td>bit-exact</td>")) << section;
+    EXPECT_TRUE(contains(section, "unexpected pass"));
+    EXPECT_TRUE(contains(section, "None mentions openmp, which is expected to conform."));
+}
+
 TEST_F(ReportPage, wide_tables_scroll_by_themselves_and_say_so)
 {
     const std::string page = page_of({bench_json(), check_json()});

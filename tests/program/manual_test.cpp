@@ -144,7 +144,7 @@ TEST_F(Manual, zsh_reads_its_completion)
     const std::string text = zsh_completion();
     for (const VerbHelp& verb : verb_helps())
         EXPECT_TRUE(contains(text, "\n    " + std::string(name_of(verb.verb)) + ")\n")) << name_of(verb.verb);
-    EXPECT_TRUE(contains(text, "'--size=[Image size in pixels, one ray each; N means NxN]:WxH:'"));
+    EXPECT_TRUE(contains(text, "'*--size=[Image size in pixels, one ray each; N means NxN]:WxH:'"));
     EXPECT_TRUE(contains(text, ":NAME:{_sequence compadd - openmp opencl"));
     if (!is_installed("zsh")) GTEST_SKIP() << "zsh is not installed";
     write_file(folder_ / "_tetrace", text);

@@ -160,7 +160,7 @@ TEST(Options, build_takes_lists_where_others_take_one_value)
     EXPECT_TRUE(contains(rejection({"bench", "--tets", "cdt,rays"}), "one value"));
     EXPECT_TRUE(contains(rejection({"bench", "--tets", "delaunay"}), "rays"));
     EXPECT_TRUE(contains(rejection({"bench", "--effort", "4"}), "--effort"));
-    EXPECT_TRUE(contains(rejection({"bench", "--size", "8", "--size", "9"}), "one value"));
+    EXPECT_TRUE(contains(rejection({"check", "--size", "8", "--size", "9"}), "one value"));
 }
 
 TEST(Options, values_reach_the_scene_requests)

@@ -297,6 +297,29 @@ TEST_F(Reproduce, samples_a_row_are_none_where_nothing_is_timed)
     EXPECT_FALSE(result("r.json").contains("searches"));
 }
 
+TEST_F(Reproduce, each_table_has_the_rows_that_a_filter_keeps_and_junit_their_verdicts)
+{
+    for (const char* const table : {"table3", "table4", "table5", "table6", "figure6"}) {
+        const Ended ended = run(std::string(table) + " --searches 20x8 --size 16 --views 0-1281:600 --samples 3 "
+                                                     "--filter maria/tet80 --junit j.xml --out r.json");
+        ASSERT_EQ(ended.code, 0) << table << ended.errors;
+        const nlohmann::json all = result("r.json");
+        const nlohmann::json& rows = all.contains("searches") ? all.at("searches").at("rows") : all.at("rows");
+        ASSERT_FALSE(rows.empty()) << table;
+        const std::string xml = read_text(folder_ / "j.xml");
+        for (const nlohmann::json& row : rows) {
+            const std::string name = row.at("name");
+            EXPECT_TRUE(contains(name, "maria/tet80")) << table << ": " << name;
+            EXPECT_TRUE(contains(xml, "name=\"" + name + "\"")) << table << ": " << name;
+        }
+        EXPECT_TRUE(contains(xml, "failures=\"0\" errors=\"0\"")) << xml;
+    }
+    const Ended none = run("table4 --size 16 --views 0 --filter nothing --junit j.xml");
+    EXPECT_EQ(none.code, 2);
+    EXPECT_TRUE(contains(none.errors, "--filter 'nothing' matches none of the")) << none.errors;
+    EXPECT_TRUE(contains(read_text(folder_ / "j.xml"), "errors=\"1\"")) << "as of any run without a result";
+}
+
 TEST_F(Reproduce, refuses_what_it_does_not_make)
 {
     const Ended unknown = run("table9");

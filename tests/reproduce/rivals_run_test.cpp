@@ -49,6 +49,21 @@ TEST_F(RivalsRun, a_layout_left_out_makes_no_claim_hold)
         EXPECT_NE(claim.at("verdict"), "holds") << claim.at("id");
 }
 
+TEST_F(RivalsRun, a_filter_leaves_rows_and_claims_about_the_others_are_not_testable)
+{
+    ASSERT_EQ(run(small + "--filter schedule:native --junit j.xml --out page.json").code, 0);
+    const nlohmann::json page = result("page.json");
+    EXPECT_GT(rows_of(page, "schedule", "native"), 2u) << "forms that are rows of this verb alone";
+    EXPECT_EQ(rows_of(page, "schedule", "native"), page.at("rows").size());
+    const std::string claims = of_id(page.at("tables"), "rivals").at("claims").dump();
+    EXPECT_NE(claims.find("--filter left out"), std::string::npos);
+    EXPECT_EQ(claims.find("\"holds\""), std::string::npos);
+    const std::string xml = read_text(folder_ / "j.xml");
+    EXPECT_TRUE(contains(xml, "<testsuite name=\"tetrace reproduce cubes\""));
+    for (const nlohmann::json& row : page.at("rows"))
+        EXPECT_TRUE(contains(xml, "name=\"" + row.at("name").get<std::string>() + "\"")) << row.at("name");
+}
+
 TEST_F(RivalsRun, wrong_command_lines_are_refused)
 {
     const auto refused = [&](const std::string& arguments, const std::string& text) {

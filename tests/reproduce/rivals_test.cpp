@@ -244,6 +244,25 @@ TEST(Rivals, rows_that_a_user_left_out_could_be_faster)
     EXPECT_EQ(judged(claim_of(), rows, {.apis = true}).verdict, holds) << "a processor's rows have one API";
 }
 
+TEST(Rivals, rows_that_a_filter_left_out_make_only_claims_about_them_not_testable)
+{
+    const std::vector<RowRecord> rows = {row_of(half32, 1), row_of(bvh2, 2)};
+    const auto without = [&](const KernelId& kernel, const std::string& scene = "bunny") {
+        return judged(claim_of(), rows, {false, false, {row_of(kernel, 1, "openmp", scene).key}});
+    };
+    const JudgedClaim left_out = without(cwbvh);
+    EXPECT_EQ(left_out.verdict, untested);
+    EXPECT_NE(to_claim(left_out).evidence.find("--filter left out 1 row that it is about, such as bvh cwbvh on openmp "
+                                               "for bunny"),
+              std::string::npos);
+    EXPECT_EQ(without(tet64).verdict, holds) << "it is of neither kind";
+    EXPECT_EQ(without(cwbvh, "banana").verdict, holds);
+    EXPECT_EQ(judged(claim_of(), {}, {false, false, {rows[0].key}}).verdict, untested);
+    const std::vector<RowRecord> slow = {row_of(half32, 2), row_of(bvh2, 1)};
+    EXPECT_EQ(judged(claim_of(), slow, {false, false, {row_of(cwbvh, 1).key}}).verdict, fails_to_hold)
+        << "a faster rival would not help it";
+}
+
 TEST(Rivals, a_gpus_rows_of_an_api_that_was_left_out_could_be_faster)
 {
     RivalClaim claim = claim_of(Walk::half32, Rival::any);

@@ -13,6 +13,7 @@
 #include <functional>
 #include <gtest/gtest.h>
 #include <limits>
+#include <map>
 #include <new>
 
 using namespace tetrace;
@@ -163,6 +164,53 @@ TEST_F(Measure, a_noisy_row_is_sampled_on_while_the_budget_lasts_unless_the_numb
     EXPECT_LE(rows_[0].samples_s.size(), 18u);
     EXPECT_EQ(rows_[0].run_samples.size(), 1u);
     EXPECT_LE(samples_with(false, 100), 6u) << "nothing is left of the budget";
+}
+
+TEST_F(Measure, a_run_that_goes_on_while_noisy_rows_are_sampled_on_takes_no_sample_twice)
+{
+    options_.samples = 6;
+    options_.exact_samples = false;
+    const TemporaryFolder folder;
+    // A calibration that stays slow after its first reading: rows are noisy to the end, and have all that they may.
+    const auto measure = [&](bool resume, int interrupted_at) {
+        set_up_rows();
+        Journal journal(folder / "journal", {{"run", 1}}, resume, true);
+        const Pulses::Work slow = [taken = 0, interrupted_at]() mutable {
+            if (++taken == interrupted_at) interrupt();
+            return std::optional(taken > 1 ? 0.02 : 0.01);
+        };
+        double now_s = 0; // the pulse is due before each sample
+        Budget hours(1e9, [&] { return now_s += 3; });
+        MachineWatch watch = watch_of(slow, &journal, hours.clock());
+        static_cast<void>(measure_rows(rows_, options_, read_benchmark_flags({}), {&journal, nullptr, &watch, &hours}));
+        forget_interrupt();
+    };
+    measure(false, 0);
+    ASSERT_EQ(rows_[0].samples_s.size(), 18u);
+    const bool is_noisy = figures_of(rows_[0])->noisy;
+    const Status status = status_of(rows_[0]);
+    measure(false, 20);
+    std::vector<std::vector<double>> before;
+    for (const RowRun& row : rows_) {
+        before.push_back(row.samples_s);
+        EXPECT_GT(row.samples_s.size(), 6u) << "it was interrupted while it was sampled on";
+        EXPECT_LT(row.samples_s.size(), 18u);
+    }
+    measure(true, 0);
+    std::map<std::string, std::size_t> kept;
+    for (const nlohmann::json& entry : read_journal(folder / "journal").entries)
+        if (entry.contains("rows"))
+            for (const auto& [name, samples] : entry["rows"].items())
+                kept[name] += samples.at("samples_s").size();
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const RowRun& row = rows_[i];
+        EXPECT_EQ(row.samples_s.size(), 18u);
+        EXPECT_EQ(row.run_samples, std::vector<std::size_t>{18});
+        EXPECT_TRUE(std::equal(before[i].begin(), before[i].end(), row.samples_s.begin())) << "those are not repeated";
+        EXPECT_EQ(kept[row_name(row.key)], 18u) << "nor kept twice";
+        EXPECT_EQ(figures_of(row)->noisy, is_noisy);
+        EXPECT_EQ(status_of(row), status);
+    }
 }
 
 TEST_F(Measure, every_row_has_its_samples_each_of_all_views)

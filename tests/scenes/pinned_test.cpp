@@ -1,4 +1,5 @@
 // Pinned scenes are the same scenes wherever they are loaded, whatever makes tets there.
+#include "core/base/cache_home.h"
 #include "core/base/error.h"
 #include "core/base/hash.h"
 #include "core/rays/camera_set.h"
@@ -69,6 +70,24 @@ TEST_F(PinnedScenes, are_joined_from_mesh_and_stored_tets_if_building_fails)
         EXPECT_TRUE(again.from_cache);
         EXPECT_EQ(again.hash, pinned.scene_hash);
     }
+}
+
+TEST_F(PinnedScenes, are_read_from_a_cache_that_cannot_be_written_to)
+{
+    let_building_fail();
+    const LoadedScene made = load("atrium-1");
+    // Below a file nobody can write, root neither; the folder is there only later.
+    const std::filesystem::path closed = folder_ / "closed";
+    write_file(closed, "");
+    const ScopedVariable cache("XDG_CACHE_HOME", closed / "cache");
+    const CacheHome replaced;
+    std::filesystem::remove(closed);
+    std::filesystem::create_directories(closed / "cache/tetrace");
+    std::filesystem::rename(made.file, closed / "cache/tetrace" / made.file.filename());
+    const LoadedScene again = load("atrium-1");
+    EXPECT_TRUE(again.from_cache);
+    EXPECT_EQ(again.file.parent_path(), closed / "cache/tetrace");
+    EXPECT_EQ(again.hash, made.hash);
 }
 
 TEST_F(PinnedScenes, are_what_the_optimiser_makes_of_their_mesh)

@@ -1,7 +1,9 @@
 // Every usable device against what tests/expected/ says of its implementation: a change in either direction fails.
+#include "bench/expectations/check_verdict.h"
 #include "bench/expectations/expectation_files.h"
 #include "bench/expectations/judgement.h"
 #include "bench/measuring/view_recorder.h"
+#include "bench/results/self_test_json.h"
 #include "core/base/error.h"
 #include "scenes/procedural.h"
 #include "tests/support/damaged_scene.h"
@@ -114,6 +116,29 @@ void expect_all(const Part& part, const Expectation& expectation, const std::vec
         }
 }
 
+/// A name that no row has is a mistake in the file, or of a row that is gone.
+void expect_rows_of_exceptions(const Part& part, const Expectation& expectation, const std::vector<RowRecord>& rows)
+{
+    for (const auto& [name, status] : expectation.exceptions) {
+        if ((name.find("/packets") != std::string::npos) != (part.packet_lanes != 0)) continue;
+        const auto has_it = [&](const RowRecord& row) {
+            return expected_name(row.key) == name || row.key.scene + "/" + expected_name(row.key) == name;
+        };
+        EXPECT_TRUE(std::ranges::any_of(rows, has_it)) << name << " is an exception, and not there now";
+    }
+}
+
+/// Each item that the device shows, and none that it does not.
+void expect_self_test(const Expectation& expectation, const std::vector<RowRecord>& rows)
+{
+    const auto row = std::ranges::find_if(rows, [](const RowRecord& one) { return one.self_test.has_value(); });
+    ASSERT_EQ(row != rows.end(), !expectation.self_test.empty()) << "either has a self-test";
+    if (row == rows.end()) return;
+    const nlohmann::json shown = self_test_json(*row->self_test);
+    for (const auto& [item, value] : shown.items())
+        EXPECT_TRUE(expectation.self_test.contains(item)) << "self_test." << item << " is " << value << " now";
+}
+
 Backend& backend_named(const std::string& name)
 {
     const auto& backends = all_backends();
@@ -156,12 +181,16 @@ protected:
             return fmt::format("tests/expected/{}.json:\n{}\n", name,
                                expectation_json(expectations_of(rows, true).at(name)).dump(2));
         const Expectations expectations = read_expectations({path});
-        for (const Deviation& one : judge_rows(rows, &expectations, true).deviations)
+        const CheckJudgement judgement = judge_rows(rows, &expectations, true);
+        EXPECT_EQ(unknown_of(judgement), std::vector<std::string>());
+        for (const Deviation& one : judgement.deviations)
             EXPECT_FALSE(fails(one.judged.judgement))
                 << name << ".json: " << one.name << ": " << one.judged.text() << ". A device that got worse has a new "
                 << "defect, or its kernel has: find out which. One that got better deserves the new status: write what "
                 << "it shows into the file, as an exception where it is not that of its schedule.";
         expect_all(GetParam(), expectations.at(name), rows);
+        expect_rows_of_exceptions(GetParam(), expectations.at(name), rows);
+        expect_self_test(expectations.at(name), rows);
         return {};
     }
 };

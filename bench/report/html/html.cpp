@@ -78,6 +78,9 @@ constexpr std::array badge_looks = {
     BadgeLook{"NOISY", "fair", "!"},
     BadgeLook{"FAILED", "bad", "✗"},
     BadgeLook{"MISSING", "bad", "✗"},
+    BadgeLook{"known", "fair", "!"},
+    BadgeLook{"unexpected", "bad", "✗"},
+    BadgeLook{"new failure", "bad", "✗"},
 };
 
 constexpr std::ptrdiff_t narrow_columns = 4; // that fit the screen of a phone
