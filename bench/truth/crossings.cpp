@@ -287,7 +287,8 @@ const char* CrossedRay::flaw_of_gaps()
     parts.push_back({rest.end, rest.end});
     for (const Stretch& part : parts) {
         if (part.begin > rest.begin + no_gap && rest.begin + no_gap < rest.end) {
-            is_exact_ = false;
+            const bool is_start = rest.begin == 0 && part.begin <= bound_; // of an origin that is rounded off a face
+            is_exact_ = is_exact_ && is_start;
             if (leaves_out({rest.begin, std::min(part.begin, rest.end)}))
                 return "it leaves out a tet in which the ray is deeper than rounding explains";
         }

@@ -30,9 +30,9 @@ static_assert(sizeof(Segments) == sizeof(Hit), "a ray's answer is HIT_WORDS word
 }
 
 /// Length of a segment, or of several, in domain units.
-[[nodiscard]] inline double length_of(std::uint32_t units)
+[[nodiscard]] inline double length_of(std::uint64_t units)
 {
-    return units * (1.0 / (1u << LENGTH_BITS));
+    return static_cast<double>(units) * (1.0 / (1u << LENGTH_BITS));
 }
 
 } // namespace tetrace
