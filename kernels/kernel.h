@@ -24,6 +24,8 @@
 // TRAVERSAL_ENTRIES, _AT_ROOT, _GOES_ON           bvh2.h, bvh4.h, cwbvh.h      refill_cuda.h
 // TAKES_RAYS, STARTS_IN_TETS                      methods, entry.h, bvh        entry files: which tasks there are
 // SEARCHES_EXITS                                  search.h                     entry files
+// CROSSES_TETS                                    segments.h                   entry files
+// NOTE_BEGIN, NOTE_CROSSING                       recording builds             segments.h
 // COUNT_SIGN, COUNT_SEARCH                        tests, counting builds       signs.h, entry_on_path.h
 // COUNT_NODE, COUNT_TRIANGLE                      tests, counting builds       bvh.h
 // clang-format on

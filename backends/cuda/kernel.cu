@@ -165,6 +165,22 @@ extern "C" __global__ void ENTRY(rays_persistent_, KERNEL_NAME)(SceneView scene,
 }
 #endif
 
+#ifdef CROSSES_TETS
+// The segments of one given ray per thread, one tile per block.
+extern "C" __global__ void ENTRY(segments_tiles_, KERNEL_NAME)(SceneView scene, LaunchParams launch, uint* output,
+                                                               const uint4* __restrict__ rays)
+{
+    Pixel pixel = pixel_of(launch, launch.first_tile + blockIdx.x, threadIdx.x);
+    if (!is_in_image(launch, pixel)) return;
+    uint ray = ray_index(pixel);
+    Segments all = cross_tets(scene, launch.trace, __ldg(rays + ray), __ldg(rays + ray_count(launch) + ray));
+    uint2* pairs = reinterpret_cast<uint2*>(output + output_word(launch, pixel));
+    pairs[0] = make_uint2(all.first, all.last);
+    pairs[1] = make_uint2(all.total, all.hash);
+    pairs[2] = make_uint2(all.reversed, all.crossings);
+}
+#endif
+
 #ifdef SEARCHES_EXITS
 // One exit search per thread, one tile per block.
 extern "C" __global__ void ENTRY(search_tiles_, KERNEL_NAME)(SceneView scene, LaunchParams launch, uint* output,

@@ -51,6 +51,13 @@ void ENTRY(run_rays_persistent_, KERNEL_NAME)(void** arguments)
 }
 #endif
 
+#ifdef CROSSES_TETS
+void ENTRY(run_segments_tiles_, KERNEL_NAME)(void** arguments)
+{
+    call(ENTRY(segments_tiles_, KERNEL_NAME), arguments);
+}
+#endif
+
 #ifdef SEARCHES_EXITS
 void ENTRY(run_search_tiles_, KERNEL_NAME)(void** arguments)
 {

@@ -1,6 +1,6 @@
 // A kernel as an OpenCL program (CMakeLists.txt): a thin entry around the shared text. Build options (session.cpp):
-// GROUP_ITEMS, the items of a work group, which traces one tile at a time; PERSISTENT for that schedule; RAYS and
-// SEARCH for those tasks; STARTS_OUTSIDE if no ray of an image begins in a tet; MATH_FAST; TETS_IN_PARTS; STACK_TOP,
+// GROUP_ITEMS, the items of a work group, which traces one tile at a time; PERSISTENT for that schedule; RAYS, SEARCH
+// and SEGMENTS for those tasks; STARTS_OUTSIDE if no ray of an image begins in a tet; MATH_FAST; TETS_IN_PARTS; STACK_TOP,
 // where stacks begin in local memory.
 #include "kernels/language/dialect_opencl.h"
 
@@ -21,6 +21,14 @@ KERNEL_FN void run_item(SceneView scene, LaunchParams launch, uint tile, __globa
     uint count = ray_count(launch);
     output[GUARD_WORDS + ray] = search_exit(scene, rays[ray], rays[count + ray], rays[2u * count + ray]);
 #else
+    __global uint2* pairs = (__global uint2*)(output + output_word(launch, pixel));
+#ifdef SEGMENTS
+    uint ray = ray_index(pixel);
+    Segments all = cross_tets(scene, launch.trace, rays[ray], rays[ray_count(launch) + ray]);
+    pairs[0] = (uint2)(all.first, all.last);
+    pairs[1] = (uint2)(all.total, all.hash);
+    pairs[2] = (uint2)(all.reversed, all.crossings);
+#else
 #ifdef RAYS
     uint ray = ray_index(pixel);
     Hit hit = trace_given(scene, launch.trace, rays[ray], rays[ray_count(launch) + ray]);
@@ -30,10 +38,10 @@ KERNEL_FN void run_item(SceneView scene, LaunchParams launch, uint tile, __globa
 #endif
     Hit hit = trace(scene, launch.trace, primary_ray(launch.trace, pixel.x, pixel.y));
 #endif
-    __global uint2* pairs = (__global uint2*)(output + output_word(launch, pixel));
     pairs[0] = (uint2)(hit.face_id, hit.tet);
     pairs[1] = (uint2)(as_bits(hit.t), as_bits(hit.u));
     pairs[2] = (uint2)(as_bits(hit.v), hit.steps);
+#endif
 #endif
 }
 

@@ -43,6 +43,7 @@ std::string defines_of(const KernelId& kernel, unsigned tile_height, bool in_par
     if (kernel.schedule == Schedule::persistent) defines += " -DPERSISTENT";
     if (kernel.task == Task::rays) defines += " -DRAYS";
     if (kernel.task == Task::search) defines += " -DSEARCH";
+    if (kernel.task == Task::segments) defines += " -DSEGMENTS";
     if (in_parts) defines += " -DTETS_IN_PARTS";
     if (starts_outside) defines += " -DSTARTS_OUTSIDE";
     if (structure_of(kernel.layout) == Structure::bvh && stack_top > 0)

@@ -1,6 +1,6 @@
 // One kernel, compiled once per kernel and math mode (CMakeLists.txt), which are given by macros:
 // KERNEL_STRUCTURE_HEADER and the like, and KERNEL_NAME. BVH kernels are compiled once more with COUNTS_VISITS, to
-// count and never to be timed.
+// count, and kernels of task segments with NOTES_CROSSINGS, to note each tet; these are never timed.
 #include "backends/openmp/kernels.h"
 #include "core/device/host.h"
 #include "core/device/launch.h"
@@ -21,6 +21,11 @@ namespace {
 thread_local std::uint32_t nodes_visited, triangles_visited;
 #define COUNT_NODE() (nodes_visited++)
 #define COUNT_TRIANGLE() (triangles_visited++)
+#endif
+#ifdef NOTES_CROSSINGS
+thread_local tetrace::openmp::Crossings* crossings;
+#define NOTE_BEGIN(place) (crossings->tets.clear(), crossings->places.assign(1, place))
+#define NOTE_CROSSING(tet, place) (crossings->tets.push_back(tet), crossings->places.push_back(place))
 #endif
 #include "kernels/kernel_cpp.h"
 
@@ -68,6 +73,17 @@ void for_pixels(const tetrace::PackedScene& packed, const tetrace::TraceJob& job
 
 namespace tetrace::openmp {
 
+#ifdef NOTES_CROSSINGS
+void FUNCTION(note_, KERNEL_NAME)(const PackedScene& packed, const Quad& direction, const Quad& origin,
+                                  std::uint32_t max_steps, Crossings& noted)
+{
+    TraceParams params{};
+    params.max_steps = max_steps;
+    crossings = &noted;
+    noted = {};
+    static_cast<void>(cross_tets(view_of(packed), params, direction, origin));
+}
+#else
 void FUNCTION(trace_, KERNEL_NAME)(const PackedScene& packed, std::span<const Quad>, const TraceJob& job,
                                    std::span<std::uint32_t> output, SharedTiles& shared, unsigned tile_height)
 {
@@ -104,6 +120,21 @@ void FUNCTION(search_, KERNEL_NAME)(const PackedScene& packed, std::span<const Q
                    output[ray] = search_exit(scene, rays[ray], rays[count + ray], rays[2 * count + ray]);
                });
 }
+#endif
+
+#ifdef CROSSES_TETS
+void FUNCTION(segments_, KERNEL_NAME)(const PackedScene& packed, std::span<const Quad> rays, const TraceJob& job,
+                                      std::span<std::uint32_t> output, SharedTiles& shared, unsigned tile_height)
+{
+    tetrace::Hit* const answers = as_hits(output).data();
+    for_pixels(
+        packed, job, shared, tile_height, [&](const SceneView& scene, const ::LaunchParams& launch, Pixel pixel) {
+            const uint ray = ray_index(pixel);
+            answers[ray] =
+                std::bit_cast<tetrace::Hit>(cross_tets(scene, launch.trace, rays[ray], rays[ray_count(launch) + ray]));
+        });
+}
+#endif
 #endif
 
 } // namespace tetrace::openmp

@@ -17,10 +17,17 @@ struct CompiledKernel {
     RunFunction* trace;
     RunFunction* rays;
     RunFunction* search;
+    RunFunction* segments;
 
     [[nodiscard]] RunFunction* function(Task task) const
     {
-        return task == Task::trace ? trace : task == Task::rays ? rays : search;
+        switch (task) {
+        case Task::trace: return trace;
+        case Task::rays: return rays;
+        case Task::search: return search;
+        case Task::segments: return segments;
+        }
+        return nullptr;
     }
 };
 [[nodiscard]] const std::vector<CompiledKernel>& compiled_kernels();
@@ -32,6 +39,20 @@ struct CompiledKernel {
 /// Those of schedule native, compiled for x86-64-v3 (host_has_fused_multiply() says whether they run); all else is as
 /// in compiled_kernels().
 [[nodiscard]] const std::vector<CompiledKernel>& native_kernels();
+
+/// What a ray crosses, in order.
+struct Crossings {
+    std::vector<std::uint32_t> tets;   ///< in packed order
+    std::vector<std::uint32_t> places; ///< of the walk's beginning, and of the face by which each tet is left
+};
+
+/// Walks as task segments does, and notes each tet. direction, origin: the ray's quads. noted: empty for a ray that
+/// crosses no tet. Never timed.
+using NoteFunction = void(const PackedScene& scene, const Quad& direction, const Quad& origin, std::uint32_t max_steps,
+                          Crossings& noted);
+
+/// That of a kernel with task segments, in math mode exact; null if there is none.
+[[nodiscard]] NoteFunction* find_note_function(KernelId id);
 
 /// The function of a kernel in such a list, for any schedule; null if the list has none.
 [[nodiscard]] RunFunction* find_function(const std::vector<CompiledKernel>& kernels, KernelId id);

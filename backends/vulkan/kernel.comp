@@ -1,6 +1,6 @@
 #version 450
 // A kernel as a compute shader (CMakeLists.txt): a thin entry around the shared text. A work group is a tile. TRACE,
-// RAYS or SEARCH: the task. With TRACE or RAYS, DEFERS_RAYS: rays at ties are deferred to the program with
+// RAYS, SEARCH or SEGMENTS: the task. With TRACE or RAYS, DEFERS_RAYS: rays at ties are deferred to the program with
 // TRACES_DEFERRED, which traces only those.
 layout(constant_id = 2) const bool selects_minima = false; // true if the driver's own minimum is slower
 #define SELECTS_MINIMA selects_minima
@@ -89,7 +89,7 @@ Hit trace_pixel(Pixel pixel)
 }
 #endif
 
-#ifndef SEARCH
+#if defined(TRACE) || defined(RAYS)
 void write_hit(Hit hit, uint word)
 {
     output_words[word] = hit.face_id;
@@ -132,6 +132,16 @@ void main()
     uint count = ray_count(launch);
     output_words[GUARD_WORDS + ray] =
         search_exit(scene, RAY_QUAD(ray), RAY_QUAD(count + ray), RAY_QUAD(2u * count + ray));
+#elif defined(SEGMENTS)
+    uint ray = ray_index(pixel);
+    Segments all = cross_tets(scene_view(), launch.trace, RAY_QUAD(ray), RAY_QUAD(ray_count(launch) + ray));
+    uint word = output_word(launch, pixel);
+    output_words[word] = all.first;
+    output_words[word + 1u] = all.last;
+    output_words[word + 2u] = all.total;
+    output_words[word + 3u] = all.hash;
+    output_words[word + 4u] = all.reversed;
+    output_words[word + 5u] = all.crossings;
 #else
     Hit hit = trace_pixel(pixel);
 #ifdef DEFERS_RAYS

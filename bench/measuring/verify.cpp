@@ -3,6 +3,7 @@
 #include "backends/openmp/kernels.h"
 #include "bench/rows/ray_store.h"
 #include "bench/rows/row_tracing.h"
+#include "bench/truth/crossings.h"
 #include "bench/truth/oracle.h"
 #include "core/base/hash.h"
 #include "core/base/stopwatch.h"
@@ -115,8 +116,8 @@ public:
         image.visits = count_visits(row, view, hits, threads_);
         image.hit_hash = hash_of(hits);
         if (reference_of(row.key)) compare(row, image, view);
-        image.verdicts = judge(row.key, view, image.hit_hash);
-        name_source_triangles(image);
+        image.verdicts = judge(row, view, image.hit_hash);
+        if (row.key.kernel.task != Task::segments) name_source_triangles(image);
         return image;
     }
 
@@ -150,7 +151,7 @@ private:
 
     [[nodiscard]] RayTotals checked_totals(const RowRun& row, std::size_t view) const
     {
-        const RayTotals totals = count_rays(hits);
+        const RayTotals totals = row.key.kernel.task == Task::segments ? count_segments(hits) : count_rays(hits);
         if (totals.unwritten > 0) {
             const auto first = static_cast<std::size_t>(
                 std::ranges::find_if(hits, [](const Hit& hit) { return hit.face_id == POISON; }) - hits.begin());
@@ -165,19 +166,22 @@ private:
 
     /// The oracle's verdicts on hits. Hits with the same hash are the same bytes, except with a probability of 2^-64 a
     /// pair. A verdict in a view therefore holds for all rows that trace the same rays from the same points.
-    Verdicts judge(const RowKey& key, std::size_t view, std::uint64_t hash)
+    Verdicts judge(const RowRun& row, std::size_t view, std::uint64_t hash)
     {
+        const RowKey& key = row.key;
         if (judged_view_ != view) judged_.clear();
         judged_view_ = view;
         for (const Judged& judged : judged_)
             if (judged.hash == hash && judged.key.kernel.structure == key.kernel.structure &&
                 same_rays(judged.key, key))
                 return judged.verdicts;
-        return judged_.emplace_back(Judged{key, hash, judge_anew(key, view)}).verdicts;
+        return judged_.emplace_back(Judged{key, hash, judge_anew(row, view)}).verdicts;
     }
 
-    Verdicts judge_anew(const RowKey& key, std::size_t view)
+    Verdicts judge_anew(const RowRun& row, std::size_t view)
     {
+        const RowKey& key = row.key;
+        if (key.kernel.task == Task::segments) return judge_segments(row, view);
         const HitFormula formula = is_portable(key.kernel) ? HitFormula::kernels : HitFormula::other;
         if (key.kernel.task == Task::rays)
             return given_oracle().judge(scene_->given_rays().set(*scene_, key.rays, key.ray_order, view), hits,
@@ -185,6 +189,23 @@ private:
                                         formula);
         return oracle_.judge(scene_->view_numbers()[view], scene_->views()[view], scene_->width(), scene_->height(),
                              hits, formula);
+    }
+
+    /// openmp's walk of each ray, tet by tet, is the claim that the answers are judged by.
+    Verdicts judge_segments(const RowRun& row, std::size_t view)
+    {
+        openmp::NoteFunction* const note = openmp::find_note_function(row.key.kernel);
+        if (note == nullptr) throw Error(ErrorKind::internal, "openmp notes no crossings of " + row_name(row.key));
+        const PackedScene& packed = row.packed->data;
+        const RaySet& set = scene_->given_rays().set(*scene_, row.key.rays, row.key.ray_order, view);
+        const std::vector<Quad>& quads = scene_->given_rays().rows(*scene_, row.key, &packed, view);
+        const std::uint32_t cap = step_cap(scene_->counts().tets, row.device);
+        const auto walk_of = [&](std::size_t ray) {
+            openmp::Crossings noted;
+            note(packed, quads[ray], quads[set.rays.size() + ray], cap, noted);
+            return CrossedTets{std::move(noted.tets), std::move(noted.places)};
+        };
+        return judge_crossings(scene_->loaded().scene, set, hits, inverse_of(packed.packed_of_mesh), walk_of, threads_);
     }
 
     void compare(const RowRun& row, ImageVerdict& image, std::size_t view)
@@ -198,8 +219,9 @@ private:
         if (!differences.first) return;
         const std::size_t ray = *differences.first;
         const std::uint32_t pixel = pixel_of_ray(row, view, ray);
-        image.first_different = DifferingRay{scene_->view_numbers()[view], pixel % scene_->width(),
-                                             pixel / scene_->width(), hits[ray], reference[ray]};
+        image.first_different = DifferingRay{
+            scene_->view_numbers()[view], pixel % scene_->width(), pixel / scene_->width(), hits[ray], reference[ray],
+            row.key.kernel.task};
     }
 
     /// Users know the triangles of their file, not the pieces that a repair cut these into.
@@ -266,6 +288,7 @@ std::span<const Hit> Verifier::reference() const
 
 Allowance allowance_of(const RowRun& row)
 {
+    if (row.key.kernel.task == Task::segments) return {}; // integers
     const std::uint32_t ulps = row.self_test ? row.self_test->allowed_ulps() : 0;
     const bool any_hit = row.key.rays == RayKind::shadow || row.key.rays == RayKind::ao;
     // Boxes are culled by quotients. Where these differ, another of several triangles may be found first.

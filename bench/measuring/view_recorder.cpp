@@ -82,7 +82,7 @@ std::uint64_t ViewRecorder::repeat(RowRun& row, std::size_t view)
         throw Error(ErrorKind::unsupported,
                     fmt::format("no primary ray hits, so rays of kind {} cannot be made", name_of(row.key.rays)));
     const std::uint64_t hash = verifier_->trace(row, view);
-    if (row.key.kernel.task == Task::rays) row.ray_hash = hash_of_rays(row);
+    if (row.key.kernel.task != Task::trace) row.ray_hash = hash_of_rays(row);
     return hash;
 }
 

@@ -201,6 +201,12 @@ std::vector<OptionRow> row_options()
          "none. Default: all.",
          reproducing | bit(Verb::dump), true, append_text(&Options::devices),
          usual_for(bit(Verb::dump), "devices whose name, type or number has this text")},
+        {"Rows", "--task", "NAME",
+         "What rows compute: 'trace', the hit of each ray; 'segments', every tet that each ray crosses, and the length "
+         "inside it, from where the ray enters the domain, or from its origin, to where it leaves the domain "
+         "(docs/volume.md). Segments are for maria and project, in exact mode, and for rays of kinds primary, diffuse "
+         "and random, all of which are given. Default: trace.",
+         measuring, true, append("--task", &Options::tasks, {Task::trace, Task::segments})},
         {"Rows", "--rays", "KIND",
          "Trace rays of this kind: 'primary', the image's own, made by the kernels. The others are made on the "
          "host, from the primary hits: 'shadow', towards a light, and 'ao', short rays in directions around the "

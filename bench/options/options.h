@@ -66,10 +66,11 @@ template <>
 inline constexpr auto enum_names<PaperBuild> = names_up_to<PaperBuild::rays>("ours", "paper", "rays");
 
 /// What rays an entry point of a kernel is for: primary ones from outside the domain, primary ones from inside, given
-/// ones, and single exit searches.
-enum class Entry { outside, inside, rays, search };
+/// ones, single exit searches, and given ones whose segments are wanted.
+enum class Entry { outside, inside, rays, search, segments };
 template <>
-inline constexpr auto enum_names<Entry> = names_up_to<Entry::search>("outside", "inside", "rays", "search");
+inline constexpr auto enum_names<Entry> = names_up_to<Entry::segments>("outside", "inside", "rays", "search",
+                                                                       "segments");
 
 /// The number of exit searches for Table 5. Default: the paper's.
 struct SearchSize {
@@ -125,6 +126,7 @@ struct Options {
     std::vector<Method> methods;
     std::vector<Layout> layouts;
     std::vector<std::string> backends;
+    std::vector<Task> tasks; ///< trace, which is rays too, and segments; empty: trace
     std::vector<RayKind> rays;
     std::vector<RayOrder> ray_orders; ///< of given rays
     std::vector<MathMode> math;

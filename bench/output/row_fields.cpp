@@ -64,6 +64,14 @@ auto if_steps(std::uint64_t RayTotals::*member)
                 [=](Traced& trace, const ResultValue& value) { read_into(trace.totals.*member, value); });
 }
 
+/// Of task segments: without a length nothing is reversed.
+auto of_segments(std::uint64_t RayTotals::*member)
+{
+    return both(
+        [=](const Traced& trace) { return trace.totals.length_units > 0 ? json(trace.totals.*member) : json(); },
+        [=](Traced& trace, const ResultValue& value) { read_into(trace.totals.*member, value); });
+}
+
 /// What neither hits nor misses have is of lost rays. After their fields.
 auto all_steps()
 {
@@ -132,7 +140,7 @@ auto first_wrong()
             return ray ? with_walk(wrong_ray_json(*ray), trace.walk_of_wrong) : json();
         },
         [](Traced& trace, const ResultValue& value) {
-            if (!value.find("exact")) return; // older results have Embree's answer in its place
+            if (value.find("embree")) return; // older results have its answer in place of the exact one
             auto& ray = trace.verdicts.first_wrong;
             set_ray(ray, trace.walk_of_wrong, wrong_ray_from, value);
             ray->reason = printable_text(ray->reason);
@@ -239,6 +247,13 @@ std::vector<RowField> identity_fields()
               }),
          recorded("count", optional, "host threads, if the run has others, too: `tetrace.threads` is the most"),
          csv("threads")},
+        {"", "task",
+         both(
+             [](const RowRecord& row) {
+                 return row.key.kernel.task == Task::segments ? json(name_of(row.key.kernel.task)) : json();
+             },
+             [](RowRecord& row, const ResultValue& value) { read_into(row.key.kernel.task, value); }),
+         recorded(R"({ "enum": ["segments"] })", optional, "left out of rows that trace"), csv("task")},
         {"", "rays", &RowKey::rays,
          recorded(R"({ "enum": ["primary", "shadow", "ao", "diffuse", "random"] })", required, "their kind"),
          csv("rays")},
@@ -451,6 +466,12 @@ std::vector<RowField> answer_fields()
          recorded("share", optional, "of the rays: entering over rays"), csv("enter share", "", 3)},
         {"counts", "hit_share", [](const Traced& trace) { return ray_shares(trace).hit; },
          recorded("share", optional, "of the rays: hits over rays"), csv("hit share", "", 3)},
+        {"counts", "reversed", of_segments(&RayTotals::reversed),
+         recorded("count", optional, "of task segments: faces that come before one met earlier, within rounding"),
+         csv("reversed")},
+        {"counts", "length_units", of_segments(&RayTotals::length_units),
+         recorded("count", optional, "of task segments: the rays' length inside the tets, in units of 2^-28"),
+         csv("length units")},
         {"counts", "misses", in(&Traced::totals, &RayTotals::misses), recorded("count", required)},
         {"counts", "lost", in(&Traced::totals, &RayTotals::lost), recorded("count", required)},
         {"counts", "hit_steps", if_steps(&RayTotals::hit_steps), recorded("count", optional, "of the rays that hit")},

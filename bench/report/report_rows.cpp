@@ -101,8 +101,10 @@ bool same_rays(const ResultScene& a, const ResultScene& b)
 RowGroup& group_for(std::vector<RowGroup>& groups, const ResultScene& scene, const ReportRow& row)
 {
     for (RowGroup& group : groups)
-        if (same_rays(group.scene, scene) && group.rays == row.rays && group.kind == row.kind()) return group;
-    return groups.emplace_back(RowGroup{scene, row.rays, row.kind(), {}});
+        if (same_rays(group.scene, scene) && group.rays == row.rays && group.are_segments == row.are_segments &&
+            group.kind == row.kind())
+            return group;
+    return groups.emplace_back(RowGroup{scene, row.rays, row.are_segments, row.kind(), {}});
 }
 
 /// Keeps groups of one scene together, in the order in which scenes appear.
@@ -112,8 +114,9 @@ void order_groups(std::vector<RowGroup>& groups)
     while (!groups.empty()) {
         const ResultScene scene = groups.front().scene;
         const RayKind rays = groups.front().rays;
+        const bool are_segments = groups.front().are_segments;
         const auto others = std::stable_partition(groups.begin(), groups.end(), [&](const RowGroup& group) {
-            return same_rays(group.scene, scene) && group.rays == rays;
+            return same_rays(group.scene, scene) && group.rays == rays && group.are_segments == are_segments;
         });
         std::stable_sort(groups.begin(), others, [](const RowGroup& a, const RowGroup& b) { return a.kind < b.kind; });
         std::move(groups.begin(), others, std::back_inserter(ordered));
@@ -141,6 +144,7 @@ std::vector<ReportRow> report_rows(const ResultFile& result, std::size_t file)
             row.api += ", " + counted(threads, "thread", "threads");
         row.device = result.head.shown(result.rows[i].device);
         read_into(row.rays, items[i].at("rays"));
+        row.are_segments = items[i].find("task").has_value();
         read_shares(row, items[i]);
         row.rate = rate_of(items[i], result.rows[i].samples_s);
         if (row.rate && !row.row->device_kind) items[i].reject("has a rate and no device");

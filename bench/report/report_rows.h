@@ -31,6 +31,7 @@ struct ReportRow {
     std::optional<KernelId> known_kernel;
     std::string api; ///< "vulkan", "vulkan:1", "openmp, 1 thread"
     RayKind rays = RayKind::primary;
+    bool are_segments = false;                    ///< of task segments
     std::string device;                           ///< the row's, but of the processor the machine's name
     std::optional<double> enter_share, hit_share; ///< of its rays: that enter the domain, and that hit
     std::optional<RowRate> rate;                  ///< only of rows with a device
@@ -63,10 +64,11 @@ struct ReportRow {
     return row.rate ? std::optional(row.rate->mrays_per_s) : std::nullopt;
 }
 
-/// Rows of any file that trace the same rays through the same scene on devices of one kind.
+/// Rows of any file that trace the same rays, or find their segments, in the same scene on devices of one kind.
 struct RowGroup {
     ResultScene scene;
     RayKind rays = RayKind::primary;
+    bool are_segments = false; ///< of task segments
     DeviceKind kind = DeviceKind::cpu;
     std::vector<const ReportRow*> rows; ///< those with a rate, fastest first
 };

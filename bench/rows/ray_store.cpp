@@ -64,11 +64,14 @@ const std::vector<Quad>& RayStore::rows(SceneWork& scene, const RowKey& key, con
                                         std::size_t view)
 {
     const SetKey set_key{key.rays, key.ray_order, view};
-    const auto [entry, is_new] = rows_.try_emplace({set_key, key.kernel.structure, key.order});
+    const auto [entry, is_new] = rows_.try_emplace({set_key, key.kernel.task, key.kernel.structure, key.order});
     if (!is_new) return entry->second;
     const RaySet& rays = set(scene, key.rays, key.ray_order, view);
-    entry->second = key.kernel.structure == Structure::cdt ? given_quads(rays, *packed)
-                                                           : given_quads_offset(rays, scene.loaded().scene.mesh);
+    if (key.kernel.task == Task::segments)
+        entry->second = segment_quads(rays, *packed);
+    else
+        entry->second = key.kernel.structure == Structure::cdt ? given_quads(rays, *packed)
+                                                               : given_quads_offset(rays, scene.loaded().scene.mesh);
     return entry->second;
 }
 

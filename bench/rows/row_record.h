@@ -54,6 +54,7 @@ inline constexpr auto enum_names<Finding> = names_up_to<Finding::error>("referen
 struct DifferingRay {
     std::uint32_t view = 0, x = 0, y = 0;
     Hit ours{}, openmp{};
+    Task task = Task::trace; ///< says how they are read
 };
 
 /// How a ray that is wrong or differs walked, for whoever looks into it. Empty if that is not known.

@@ -20,7 +20,7 @@ std::uint64_t launch_bytes(const RowRun& row, const ViewBatch& views)
     std::vector<std::size_t> rays;
     for (const std::size_t view : views)
         rays.push_back(ray_count(row, view));
-    const bool are_given = row.key.kernel.task == Task::rays;
+    const bool are_given = row.key.kernel.task != Task::trace;
     if (are_given) rays = {ray_count(row, views)};
     const std::uint64_t output = OutputParts(rays, HIT_WORDS).words() * sizeof(std::uint32_t);
     return are_given ? std::max<std::uint64_t>(output, GIVEN_RAY_QUADS * sizeof(Quad) * rays.front()) : output;

@@ -174,17 +174,27 @@ std::vector<RowKey> rows_of_scene(const Options& options, const std::string& sce
     return rows;
 }
 
-/// Rows of primary rays, and rows of given rays in each order asked for, kind after kind.
-std::vector<RowKey> rows_of_kinds(const Options& options, const std::string& scene,
+/// Segments go on to where a ray leaves the domain.
+bool has_end(RayKind kind)
+{
+    return kind == RayKind::shadow || kind == RayKind::ao;
+}
+
+/// Rows of a task, trace or segments: of primary rays, and of given rays in each order asked for, kind after kind.
+std::vector<RowKey> rows_of_kinds(const Options& options, Task task, const std::string& scene,
                                   const std::vector<Backend*>& backends)
 {
     static const std::vector<KernelId> given_kernels = kernels_of(Task::rays);
+    static const std::vector<KernelId> segment_kernels = kernels_of(Task::segments);
+    const bool are_segments = task == Task::segments;
     std::vector<RowKey> rows;
     for (const RayKind kind : options.rays.empty() ? std::vector{RayKind::primary} : options.rays) {
-        const bool is_given = kind != RayKind::primary;
+        if (are_segments && has_end(kind)) continue;
+        const bool is_given = are_segments || kind != RayKind::primary;
+        const auto& kernels = are_segments ? segment_kernels : is_given ? given_kernels : all_kernels();
         const auto orders = is_given && !options.ray_orders.empty() ? options.ray_orders : std::vector{RayOrder::tiles};
         for (const RayOrder order : orders)
-            for (RowKey key : rows_of_scene(options, scene, backends, is_given ? given_kernels : all_kernels())) {
+            for (RowKey key : rows_of_scene(options, scene, backends, kernels)) {
                 key.rays = kind;
                 key.ray_order = order;
                 rows.push_back(std::move(key));
@@ -240,6 +250,10 @@ void require_named_devices(const Options& options, const std::vector<Backend*>& 
     }
 }
 
+constexpr const char* segments_rule =
+    "; rows of --task segments are of maria and project on tets that name their corners, with schedule tiles, math "
+    "mode exact, and rays of kinds primary, diffuse and random";
+
 /// The reasons of the backends asked for, to explain an empty selection.
 std::string reasons(const Options& options)
 {
@@ -256,9 +270,9 @@ std::string reasons(const Options& options)
 {
     if (unfiltered.empty())
         throw Error(ErrorKind::usage,
-                    "no row has this combination of --structure, --method, --layout, --rays, --backend, --device, "
-                    "--schedule and --math" +
-                        reasons(options) +
+                    "no row has this combination of --structure, --method, --layout, --task, --rays, --backend, "
+                    "--device, --schedule and --math" +
+                        std::string(has(options.tasks, Task::segments) ? segments_rule : "") + reasons(options) +
                         fmt::format("\n'tetrace {} --list' prints the rows of the defaults",
                                     options.verb == Verb::check ? "check" : "bench"));
     std::string text = fmt::format("--filter '{:.200}' matches none of the {} rows selected otherwise:", options.filter,
@@ -303,7 +317,7 @@ bool same_work(const RowKey& a, const RowKey& b)
 bool same_rays(RowKey a, RowKey b)
 {
     for (RowKey* key : {&a, &b}) {
-        key->kernel = {};
+        key->kernel = {.task = key->kernel.task == Task::segments ? Task::segments : Task::trace};
         key->order = {};
     }
     return same_work(a, b);
@@ -368,7 +382,7 @@ std::vector<std::string> missing_devices(const Options& options, const std::vect
 std::string kernel_title(const RowKey& key)
 {
     const KernelId& kernel = key.kernel;
-    std::string title(name_of(kernel.structure));
+    std::string title(kernel.task == Task::segments ? name_of(kernel.task) : name_of(kernel.structure));
     if (kernel.structure == Structure::cdt) title.append(" ").append(name_of(kernel.method));
     title += ' ';
     if (is_embree(kernel.layout))
@@ -396,6 +410,7 @@ std::optional<KernelId> kernel_named(std::string_view method, std::string_view l
 std::string rays_title(const RowKey& key)
 {
     std::string title = key.scene;
+    if (key.kernel.task == Task::segments) title += ", segments";
     if (key.rays != RayKind::primary) title += fmt::format(", {} rays", name_of(key.rays));
     if (key.ray_order != RayOrder::tiles) title += fmt::format(" {}", name_of(key.ray_order));
     return title;
@@ -412,8 +427,9 @@ std::vector<RowKey> unfiltered_rows(const Options& options, const std::vector<st
     require_named_devices(options, backends);
     std::vector<RowKey> rows;
     for (const std::string& scene : scene_labels)
-        for (const RowKey& key : rows_of_kinds(options, scene, backends))
-            rows.push_back(key);
+        for (const Task task : options.tasks.empty() ? std::vector{Task::trace} : options.tasks)
+            for (const RowKey& key : rows_of_kinds(options, task, scene, backends))
+                rows.push_back(key);
     if (rows.empty()) reject_selection(options, rows);
     return rows;
 }

@@ -31,7 +31,8 @@ struct RowKey {
 /// Backends, devices and threads may differ.
 [[nodiscard]] bool same_work(const RowKey& a, const RowKey& b);
 
-/// Whether two rows trace the same rays of the same scene in the same order, with any kernels on any device.
+/// Whether two rows trace the same rays of the same scene in the same order, with any kernels on any device, and
+/// both or neither for their segments.
 [[nodiscard]] bool same_rays(RowKey a, RowKey b);
 
 /// Whether two rows run in the same place: a backend's device, with the same threads.
@@ -62,6 +63,7 @@ struct RowKey {
 /// - Defaults: exact, tiles and (except in `reproduce`) packets, and chains. Without methods, of the cdt only maria
 /// and project on half32 and tet64.
 /// - Kinds of rays other than primary have rows of the kernels that take rays.
+/// - Rows of task segments have given rays, primary ones too, and no kind whose rays have an end.
 /// - A backend has rows of its usable devices. A backend without one has rows of its first device where --backend or
 /// --require names it.
 /// - A kernel that a backend has and a device cannot run still gets a row, which ends as unsupported.

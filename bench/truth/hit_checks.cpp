@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/exact.h"
+#include "core/rays/segments.h"
 
 #include <algorithm>
 #include <cstring>
@@ -30,9 +31,9 @@ std::uint64_t max_ulps(const Hit& a, const Hit& b)
 
 void RayTotals::add(const RayTotals& other)
 {
-    for (const auto count :
-         {&RayTotals::rays, &RayTotals::hits, &RayTotals::misses, &RayTotals::lost, &RayTotals::unwritten,
-          &RayTotals::hit_steps, &RayTotals::miss_steps, &RayTotals::lost_steps})
+    for (const auto count : {&RayTotals::rays, &RayTotals::hits, &RayTotals::misses, &RayTotals::lost,
+                             &RayTotals::unwritten, &RayTotals::hit_steps, &RayTotals::miss_steps,
+                             &RayTotals::lost_steps, &RayTotals::reversed, &RayTotals::length_units})
         this->*count += other.*count;
 }
 
@@ -49,6 +50,18 @@ RayTotals count_rays(std::span<const Hit> hits)
             ++totals.misses, totals.miss_steps += hit.steps;
         else
             ++totals.hits, totals.hit_steps += hit.steps;
+    }
+    return totals;
+}
+
+RayTotals count_segments(std::span<const Hit> answers)
+{
+    RayTotals totals = count_rays(answers);
+    for (const Hit& answer : answers) {
+        const Segments segments = segments_of(answer);
+        if (segments.first == POISON) continue;
+        totals.reversed += segments.reversed;
+        totals.length_units += segments.length;
     }
     return totals;
 }

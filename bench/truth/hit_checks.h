@@ -18,11 +18,15 @@ struct RayTotals {
     std::uint64_t hit_steps = 0;
     std::uint64_t miss_steps = 0;
     std::uint64_t lost_steps = 0;
+    std::uint64_t reversed = 0; ///< of task segments: Segments::reversed, and the same of length
+    std::uint64_t length_units = 0;
 
     [[nodiscard]] std::uint64_t steps() const { return hit_steps + miss_steps + lost_steps; }
     void add(const RayTotals& other);
 };
 [[nodiscard]] RayTotals count_rays(std::span<const Hit> hits);
+/// The same for answers of task segments: a hit is a ray that crosses the domain, a step a tet that it leaves.
+[[nodiscard]] RayTotals count_segments(std::span<const Hit> answers);
 
 /// How far two answers may differ and still count as equal.
 struct Allowance {

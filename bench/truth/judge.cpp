@@ -78,7 +78,7 @@ void Judge::blame(Verdicts& verdicts, const JudgedRay& judged, const Hit& hit, F
         judged.view, judged.x, judged.y, hit, flaw.first, std::isfinite(t) ? static_cast<float>(t) : 0, flaw.reason};
 }
 
-Verdicts Judge::sum_of(std::span<const Verdicts> blocks, std::size_t rays)
+Verdicts sum_of(std::span<const Verdicts> blocks, std::size_t rays)
 {
     Verdicts all;
     for (const Verdicts& block : blocks) {

@@ -22,6 +22,7 @@ struct WrongRay {
     std::uint32_t reference_face = NO_HIT;
     float reference_t = 0;
     std::string reason;
+    Task task = Task::trace; ///< says how `ours` is read; segments have no reference
 };
 
 /// Verdicts on the rays of an image; each ray is in exactly one of agreed, ties, settled, offset, wrong, lost.

@@ -3,7 +3,9 @@
 #include "core/base/error.h"
 #include "core/rays/ray_start.h"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <string>
 
 namespace tetrace {
@@ -45,6 +47,21 @@ std::vector<Quad> given_quads(const RaySet& set, const PackedScene& packed)
     return quads_of_rays(
         set, [&](const GivenRay& ray) { return packed_half_face(ray.half_face, packed); },
         [](const GivenRay& ray) { return ray.origin; });
+}
+
+std::uint32_t stretch_of(Float3 direction)
+{
+    const Double3 d = to_double(direction);
+    const double largest = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+    return static_cast<std::uint32_t>(std::sqrt(dot(d, d)) / largest * 0x1p31 + 0.5);
+}
+
+std::vector<Quad> segment_quads(const RaySet& set, const PackedScene& packed)
+{
+    std::vector<Quad> quads = given_quads(set, packed);
+    for (std::size_t i = 0; i < set.rays.size(); ++i)
+        quads[set.rays.size() + i].w = stretch_of(set.rays[i].direction);
+    return quads;
 }
 
 std::vector<Quad> given_quads_offset(const RaySet& set, const TriangleMesh& mesh)

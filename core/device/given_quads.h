@@ -12,6 +12,12 @@ namespace tetrace {
 /// Throws Error{internal} if a half-face names none of its tets.
 [[nodiscard]] std::vector<Quad> given_quads(const RaySet& set, const PackedScene& packed);
 
+/// The same for task segments: each with its ray's stretch in place of its end. Precondition: no ray has an end.
+[[nodiscard]] std::vector<Quad> segment_quads(const RaySet& set, const PackedScene& packed);
+
+/// 2^STRETCH_BITS times a direction's length over the magnitude of its largest component, rounded to nearest.
+[[nodiscard]] std::uint32_t stretch_of(Float3 direction);
+
 /// The same for a BVH: origins are offset, without half-faces.
 [[nodiscard]] std::vector<Quad> given_quads_offset(const RaySet& set, const TriangleMesh& mesh);
 

@@ -25,7 +25,8 @@ constexpr unsigned bit(T value)
 
 const std::vector<KernelRow>& kernel_rows()
 {
-    constexpr unsigned trace = bit(Task::trace), rays = bit(Task::rays), search = bit(Task::search);
+    constexpr unsigned trace = bit(Task::trace), rays = bit(Task::rays), search = bit(Task::search),
+                       segments = bit(Task::segments);
     constexpr unsigned tiles = bit(Schedule::tiles), persistent = bit(Schedule::persistent),
                        packets = bit(Schedule::packets), native = bit(Schedule::native),
                        pipeline = bit(Schedule::pipeline);
@@ -102,7 +103,9 @@ bool has_packets(const KernelId& kernel)
 
 bool has_task(const KernelId& kernel)
 {
-    if (kernel.task == Task::search && kernel.schedule != Schedule::tiles) return false;
+    const bool is_hit = kernel.task == Task::trace || kernel.task == Task::rays;
+    if (!is_hit && kernel.schedule != Schedule::tiles) return false;
+    if (kernel.task == Task::segments && kernel.math != MathMode::exact) return false;
     return (row_of(kernel).tasks & bit(kernel.task)) != 0;
 }
 
@@ -162,7 +165,8 @@ std::string_view name_of(Layout value)
 
 std::string name_of(const KernelId& kernel)
 {
-    std::string name(kernel.task == Task::search ? name_of(kernel.task) : name_of(kernel.structure));
+    const bool is_hit = kernel.task == Task::trace || kernel.task == Task::rays;
+    std::string name(is_hit ? name_of(kernel.structure) : name_of(kernel.task));
     name.append("/").append(name_of(kernel.method)).append("/").append(name_of(kernel.layout));
     return name;
 }

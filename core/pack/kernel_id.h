@@ -54,11 +54,11 @@ inline constexpr auto enum_names<Schedule> = names_up_to<Schedule::pipeline>("ti
 {
     return schedule == Schedule::tiles || schedule == Schedule::persistent;
 }
-/// What a kernel does: it traces the primary rays of an image, traces given rays, or searches the exit face of a single
-/// tet for each given ray.
-enum class Task { trace, rays, search };
+/// What a kernel does: it traces the primary rays of an image, traces given rays, searches the exit face of a single
+/// tet for each given ray, or crosses every tet on given rays (core/rays/segments.h).
+enum class Task { trace, rays, search, segments };
 template <>
-inline constexpr auto enum_names<Task> = names_up_to<Task::search>("trace", "rays", "search");
+inline constexpr auto enum_names<Task> = names_up_to<Task::segments>("trace", "rays", "search", "segments");
 /// The order of the tets in memory: along a space-filling curve; the same, with the tets that no ray from outside
 /// reaches (inside closed surfaces) after all others; the same in chains, each tet followed by its neighbour across its
 /// largest free face; as the tetrahedralization wrote them.
@@ -82,7 +82,8 @@ struct KernelId {
 /// the CDT, then of our BVHs, then foreign ones; each by schedule, tiles first, and math mode, exact first.
 [[nodiscard]] const std::vector<KernelId>& all_kernels();
 
-/// Whether the list has the kernel with that task, in any math mode; exit searches have only schedule tiles.
+/// Whether the list has the kernel with that task, in any math mode; exit searches and segments have only schedule
+/// tiles, and segments only math mode exact.
 [[nodiscard]] bool has_task(const KernelId& kernel);
 
 /// Whether the kernel has packets; its schedule is ignored. Only one walk is written for packets, in exact mode.
@@ -115,8 +116,8 @@ struct KernelId {
 [[nodiscard]] std::string_view name_of(Method value);
 [[nodiscard]] std::string_view name_of(Layout value);
 
-/// structure/method/layout, for example "cdt/maria/tet80"; "search/maria/tet80" for task search; for task rays the same
-/// as for trace.
+/// structure/method/layout, for example "cdt/maria/tet80"; "search/maria/tet80" for task search, "segments/maria/tet80"
+/// for task segments; for task rays the same as for trace.
 [[nodiscard]] std::string name_of(const KernelId& kernel);
 
 struct Bvh;

@@ -1,6 +1,7 @@
 // bvh/: the BVH layouts with their traversals, and what these share.
 
 // What the BVHs share: a ray as their tests take it, boxes, and the triangle test (docs/spec/bvhs.md, B4).
+#include "kernels/reciprocal.h"
 #include "kernels/shear.h"
 
 #include "kernels/stack.h"
@@ -64,17 +65,6 @@ KERNEL_FN Nearest no_hit_before(Ray ray, real end)
     nearest.triangle = NO_HIT;
     nearest.at = 0u;
     return nearest;
-}
-
-// Quotients that are compared must have the same bits everywhere; division does not guarantee that. a: normal, 2^-126
-// to 2^124.
-KERNEL_FN real reciprocal(real a)
-{
-    real guess = as_real(0x7EF311C3u - as_bits(a));
-    PRECISE real first = guess * (real(2.0f) - a * guess);
-    PRECISE real second = first * (real(2.0f) - a * first);
-    PRECISE real third = second * (real(2.0f) - a * second);
-    return third;
 }
 
 // weighted: the sum of depths times 2^40, weighted by the sides, whose sum is the determinant.

@@ -21,6 +21,14 @@
 //   {direction, half-face}  {origin, end}
 #define GIVEN_RAY_QUADS 2u
 #define NO_END 3.0e38f // of a ray that goes on for ever
+// Task segments: the same quads, with the ray's stretch in place of its end, which it has none: 2^STRETCH_BITS times
+// the length of the direction over the magnitude of its largest component, rounded; 1 to sqrt 3. A place is a
+// coordinate along that component's axis in units of 2^-PLACE_BITS, from -2 on, times the stretch, times 2^-32: a
+// length from there in units of 2^-LENGTH_BITS.
+#define STRETCH_BITS 31u
+#define PLACE_BITS 29u
+#define LENGTH_BITS 28u
+#define PLACE_OF_ZERO 0x40000000u // 2 * 2^PLACE_BITS
 // After this many steps a walk checks whether it is in a circle. Longer walks are rare, and those in circles end soon.
 #define STEPS_BEFORE_DOUBT 4096u
 // A tile of an image is a work group: this many pixels wide, 4 or 8 high.

@@ -119,7 +119,9 @@ INSTANTIATE_TEST_SUITE_P(
                    .same_rays = true,
                    .is_in_title = true},
         // The kind of rays decides the task, and the names have the kind.
-        Difference{.field = "task", .change = [](RowKey& key) { key.kernel.task = Task::trace; }, .same_rays = true}),
+        Difference{.field = "task", .change = [](RowKey& key) { key.kernel.task = Task::trace; }, .same_rays = true},
+        Difference{
+            .field = "segments", .change = [](RowKey& key) { key.kernel.task = Task::segments; }, .is_in_title = true}),
     [](const auto& test) { return std::string(test.param.field); });
 
 TEST(ReferenceRow, is_the_references_own_row_of_the_same_work)

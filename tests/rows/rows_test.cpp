@@ -345,6 +345,22 @@ TEST(Rows, kinds_and_orders_of_given_rays_are_rows_of_the_kernels_that_take_rays
     EXPECT_EQ(rows[0].kernel.task, Task::trace);
 }
 
+TEST(Rows, segments_are_rows_of_their_own_on_given_rays_without_an_end)
+{
+    const auto rows = names({"bench", "--task", "trace,segments", "--layout", "tet80,half32,tet64,bvh2", "--backend",
+                             "openmp", "--schedule", "tiles", "--rays", "primary,ao,random", "--filter", "segments"},
+                            {"s"});
+    EXPECT_EQ(rows, (std::vector<std::string>{"segments/maria/tet80/s/primary/math:exact/api:openmp",
+                                              "segments/project/half32/s/primary/math:exact/api:openmp",
+                                              "segments/project/tet64/s/primary/math:exact/api:openmp",
+                                              "segments/maria/tet80/s/random/math:exact/api:openmp",
+                                              "segments/project/half32/s/random/math:exact/api:openmp",
+                                              "segments/project/tet64/s/random/math:exact/api:openmp"}));
+    for (const char* const rays : {"ao", "shadow"})
+        EXPECT_THROW(static_cast<void>(names({"bench", "--task", "segments", "--rays", rays}, {"s"})), Error) << rays;
+    EXPECT_THROW(static_cast<void>(parse_options({"bench", "--task", "search"})), Error);
+}
+
 TEST(Rows, bvhs_of_ours_have_math_modes_and_schedules_and_embrees_do_not)
 {
     const auto bvhs =

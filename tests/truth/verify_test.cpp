@@ -6,6 +6,7 @@
 #include "bench/output/difference_pictures.h"
 #include "bench/rows/ray_store.h"
 #include "bench/terminal/interrupts.h"
+#include "core/rays/segments.h"
 #include "tests/support/row_runs.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/wrapped_session.h"
@@ -52,10 +53,11 @@ protected:
     }
 
     /// A row of openmp's on rays that are given, whose answers are damaged, called `backend`.
-    RowRun damaged_row(RayKind kind, Layout layout, const Damage& damage, const std::string& backend)
+    RowRun damaged_row(RayKind kind, Layout layout, const Damage& damage, const std::string& backend,
+                       Task task = Task::rays)
     {
         RowKey key{"cubes", "openmp", {}, kind, TetOrder::chains};
-        key.kernel.task = Task::rays;
+        key.kernel.task = task;
         key.kernel.layout = layout;
         key.kernel.structure = structure_of(layout);
         if (key.kernel.structure == Structure::bvh) key.kernel.method = Method::single;
@@ -350,6 +352,40 @@ TEST_F(Verify, paths_of_tets_are_reported_only_of_primary_rays_through_tets)
     });
     note_walks(primary);
     EXPECT_NE(differences_text(primary).find("tets of openmp"), std::string::npos);
+}
+
+TEST_F(Verify, segments_are_compared_bit_by_bit_and_judged_by_the_walk)
+{
+    const auto verified_segments = [&](RayKind kind, const Damage& damage, const std::string& backend) {
+        RowRun row = damaged_row(kind, Layout::tet80, damage, backend, Task::segments);
+        verify_rows({&row}, scene_, options_);
+        return row;
+    };
+    for (const RayKind kind : {RayKind::primary, RayKind::diffuse, RayKind::random}) {
+        const RowRun right = verified_segments(
+            kind, [](std::span<Hit>) {}, "other");
+        ASSERT_NE(traced(right), nullptr) << reason_of(right);
+        EXPECT_EQ(status_of(right), Status::ok) << reason_of(right);
+        EXPECT_EQ(conformity_of(right), Conformity::bit_exact);
+        EXPECT_TRUE(right.ray_hash.has_value());
+        EXPECT_GT(traced(right)->totals.length_units, 0u);
+        EXPECT_GT(traced(right)->totals.hit_steps, traced(right)->totals.hits);
+    }
+    const auto one_length = [](std::span<Hit> hits) {
+        Segments answer = segments_of(hits[3]);
+        ++answer.length;
+        hits[3] = as_hit(answer);
+    };
+    const RowRun wrong = verified_segments(RayKind::random, one_length, "other");
+    EXPECT_EQ(traced(wrong)->different, 2u) << "one a view: a unit of 2^-28 is a difference";
+    EXPECT_EQ(status_of(wrong), Status::wrong);
+    EXPECT_NE(differences_text(wrong).find("crossings, tet"), std::string::npos) << differences_text(wrong);
+    const RowRun flawed = verified_segments(RayKind::random, one_length, "openmp");
+    EXPECT_EQ(traced(flawed)->verdicts.wrong, 2u);
+    EXPECT_EQ(status_of(flawed), Status::flawed);
+    const RowRun lost = verified_segments(
+        RayKind::random, [](std::span<Hit> hits) { hits[3].face_id = LOST; }, "openmp");
+    EXPECT_EQ(traced(lost)->verdicts.lost, 2u);
 }
 
 TEST_F(Verify, a_given_ray_with_a_wrong_face_is_flawed)

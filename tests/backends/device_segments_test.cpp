@@ -1,0 +1,40 @@
+// On every device of every API that can be used here: rays cross the tets that they cross on openmp, bit for bit.
+#include "tests/backends/each_device.h"
+#include "tests/support/crossed_tets.h"
+#include "tests/support/given_scene.h"
+#include "tests/support/hard_rays.h"
+
+using namespace tetrace;
+using namespace tetrace::test;
+
+namespace {
+
+class DeviceSegments : public EachDevice {};
+
+std::size_t different_answers(const std::vector<Hit>& a, const std::vector<Hit>& b)
+{
+    std::size_t count = a.size() == b.size() ? 0 : 1;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+        if (segments_of(a[i]) != segments_of(b[i])) ++count;
+    return count;
+}
+
+} // namespace
+
+TEST_P(DeviceSegments, have_openmps_bits_for_each_method_and_layout)
+{
+    const GivenScene cubes{24, false, 6};
+    const std::vector<RaySet> sets = {hard_ray_set(cubes.scene, 0, 1800), make_rays(RayKind::primary, cubes.source()),
+                                      make_rays(RayKind::diffuse, cubes.source())};
+    for (const KernelId& kernel : kernels_of(Task::segments)) {
+        const CrossedScene tets(cubes.scene, kernel.method, kernel.layout);
+        for (const std::size_t device : usable) {
+            const auto session = backend.open(device, kernel, {&cubes.scene.mesh, &tets.packed()}, {});
+            for (const RaySet& set : sets)
+                EXPECT_EQ(different_answers(tets.answers(*session, set), tets.answers(set)), 0u)
+                    << backend.devices()[device].name << ' ' << name_of(kernel);
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(each, DeviceSegments, ::testing::ValuesIn(apis()), case_name);

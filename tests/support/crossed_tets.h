@@ -1,0 +1,67 @@
+#pragma once
+
+#include "backends/openmp/backend.h"
+#include "backends/openmp/kernels.h"
+#include "bench/truth/crossings.h"
+#include "core/device/given_quads.h"
+#include "core/pack/packed_scene.h"
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace tetrace::test {
+
+/// A scene packed for a kernel of task segments, and what openmp answers and notes there.
+class CrossedScene {
+public:
+    CrossedScene(const Scene& scene, Method method, Layout layout)
+        : scene_(scene), kernel_{.method = method, .layout = layout, .task = Task::segments},
+          packed_(pack(scene, layout, TetOrder::chains)), mesh_of_packed_(inverse_of(packed_.packed_of_mesh))
+    {
+    }
+
+    [[nodiscard]] const KernelId& kernel() const { return kernel_; }
+    [[nodiscard]] const PackedScene& packed() const { return packed_; }
+    [[nodiscard]] const std::vector<std::uint32_t>& mesh_of_packed() const { return mesh_of_packed_; }
+
+    /// The answers of a device's session on this scene.
+    [[nodiscard]] std::vector<Hit> answers(Session& session, const RaySet& set) const
+    {
+        session.set_rays(segment_quads(set, packed_));
+        std::vector<Hit> answers(set.rays.size());
+        (void)session.trace(given_job(set.rays.size(), packed_.tet_count + 1, false), answers);
+        return answers;
+    }
+    [[nodiscard]] std::vector<Hit> answers(const RaySet& set) const
+    {
+        const auto session = openmp_backend().open(0, kernel_, {&scene_.mesh, &packed_}, {.threads = 2});
+        return answers(*session, set);
+    }
+    [[nodiscard]] std::vector<CrossedTets> walks(const RaySet& set) const
+    {
+        openmp::NoteFunction* const note = openmp::find_note_function(kernel_);
+        const auto quads = segment_quads(set, packed_);
+        std::vector<CrossedTets> walks;
+        for (std::size_t i = 0; i < set.rays.size(); ++i) {
+            openmp::Crossings noted;
+            note(packed_, quads[i], quads[set.rays.size() + i], packed_.tet_count + 1, noted);
+            walks.push_back({std::move(noted.tets), std::move(noted.places)});
+        }
+        return walks;
+    }
+    [[nodiscard]] Verdicts judged(const RaySet& set, const std::vector<Hit>& answers,
+                                  const std::vector<CrossedTets>& walks) const
+    {
+        return judge_crossings(
+            scene_, set, answers, mesh_of_packed_, [&](std::size_t i) { return walks[i]; }, 2);
+    }
+
+private:
+    const Scene& scene_;
+    KernelId kernel_;
+    PackedScene packed_;
+    std::vector<std::uint32_t> mesh_of_packed_;
+};
+
+} // namespace tetrace::test
