@@ -1,5 +1,6 @@
 // Given rays, which do not stay together: a lane whose ray has ended takes a waiting ray. The entry into the domain is
 // found before, and the hit on the triangle after, in packets all of whose lanes have such a ray.
+constexpr uint given_in_turns = 8;       // with more, what they prefetch exceeds what a processor can wait for
 constexpr uint lanes_wanted = LANES / 4; // a packet takes new rays when it has fewer live lanes
 constexpr uint rays_at_once = 512;       // that a thread takes at a time
 constexpr uint rays_ahead = 32;          // whose tets are prefetched before the rays are taken
@@ -299,17 +300,17 @@ template <bool has_ends>
     queue.first = queue.next = queue.end = 0;
     Met met;
     __builtin_memset(&met, 0, sizeof met);
-    Packet packets[packets_in_turns];
-    GivenWalk walks[packets_in_turns];
-    uint checked[packets_in_turns] = {};
-    for (uint i = 0; i < packets_in_turns; ++i) {
+    Packet packets[given_in_turns];
+    GivenWalk walks[given_in_turns];
+    uint checked[given_in_turns] = {};
+    for (uint i = 0; i < given_in_turns; ++i) {
         __builtin_memset(&packets[i], 0, sizeof(Packet));
         __builtin_memset(&walks[i], 0, sizeof(GivenWalk));
     }
     bool goes_on = true;
     for (uint steps = 0; goes_on; ++steps) {
         goes_on = may_have_rays(job, queue); // even if all lanes have just run out of steps
-        for (uint i = 0; i < packets_in_turns; ++i) {
+        for (uint i = 0; i < given_in_turns; ++i) {
             const auto live = static_cast<uint>(__builtin_popcount(walks[i].live));
             const bool takes = live < lanes_wanted && has_rays(job, queue);
             const bool has_ended = live == 0 && packets[i].lanes != 0;

@@ -3,7 +3,7 @@
 // The walk of a packet's lanes: walk_by_records.h, lane by lane. Lanes do not decide ties: a tie is rare, and the
 // scalar kernel then traces that ray from its start.
 
-constexpr uint packets_in_turns = 8; // enough that what one of them prefetches is there when its turn comes
+constexpr uint packets_in_turns = 16; // of an image: what one of them prefetches is there when its turn comes
 
 // Where lanes are: in front of the tet and face of their records.
 struct WalkState {
