@@ -331,6 +331,21 @@ std::vector<std::string> unmentioned_of(const std::vector<DefectRun>& runs, cons
     return {implementations.begin(), implementations.end()};
 }
 
+/// Sentences on defects that files expect of implementations of this run, and that tetrace does not have.
+std::vector<std::string> unknown_of(const std::vector<DefectRun>& runs, const Expectations& expectations)
+{
+    std::set<std::string> sentences;
+    for (const DefectRun& run : runs) {
+        const auto expectation = expectations.find(run.device.implementation);
+        if (expectation == expectations.end()) continue;
+        for (const auto& [name, shown] : expectation->second.defects)
+            if (std::ranges::find(all_defects(), name, &Defect::name) == all_defects().end())
+                sentences.insert(
+                    fmt::format("{}: defects.{}: no reduced kernel has this name", expectation->second.file, name));
+    }
+    return {sentences.begin(), sentences.end()};
+}
+
 CheckVerdict verdict_on(const std::vector<DefectRun>& runs)
 {
     std::set<std::string> devices;
@@ -378,7 +393,8 @@ Report defect_report(const std::vector<DefectRun>& runs, const std::vector<std::
         section["defects"].push_back(run_json(run));
     section["missing_devices"] = missing;
     if (expectations != nullptr) {
-        set_expectations(section, *expectations, deviations_of(runs), unmentioned_of(runs, *expectations));
+        set_expectations(section, *expectations, deviations_of(runs), unmentioned_of(runs, *expectations),
+                         unknown_of(runs, *expectations));
         set_verdict(section, verdict_on(runs));
     }
     const nlohmann::json json = {{"tetrace", std::move(section)}};

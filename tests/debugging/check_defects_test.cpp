@@ -51,6 +51,10 @@ TEST_F(CheckDefects, needs_no_scene_and_is_good_where_nothing_is_seen)
     EXPECT_EQ(ended.code, 0) << ended.errors;
     EXPECT_TRUE(contains(ended.out, "6 reduced kernels ran: 0 show their defect")) << ended.out;
     EXPECT_EQ(run("check --defects --backend embree").code, 3);
+    write_file(folder_ / "openmp.json", R"({"defects": {"loop": "right"}})");
+    const Ended expecting = run("check --defects --backend openmp --expect openmp.json");
+    EXPECT_EQ(expecting.code, 0) << expecting.errors;
+    EXPECT_TRUE(contains(expecting.out, "openmp.json: defects.loop: no reduced kernel has this name")) << expecting.out;
 }
 
 TEST_F(CheckDefects, are_not_shared_among_processes)
