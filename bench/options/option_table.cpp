@@ -116,8 +116,8 @@ std::vector<OptionRow> scene_options()
          usual_for(bit(Verb::build) | bit(Verb::render), "how the domain is filled: {}")},
         {"Scenes", "--effort", "N",
          "Effort for --tets rays: 0 (TetGen's tets, unchanged, but with the --switches of this kind, so not those "
-         "of --tets cdt), 1 (quick), 2, or 3 (vertices are inserted too; the optimiser needs ten times as long, for "
-         "at most 1 % fewer steps). Default: " +
+         "of --tets cdt), 1 (quick), 2, or 3 (vertices are inserted for a mesh of one piece too; the optimiser needs "
+         "three times as long, for at most 1 % fewer steps). Default: " +
              std::to_string(usual_effort) + ".",
          building, false,
          [](Options& o, const std::string& v) { o.effort = static_cast<int>(parse_count("--effort", v, 0, 3)); },
