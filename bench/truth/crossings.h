@@ -17,10 +17,10 @@ struct CrossedTets {
     std::vector<std::uint32_t> places; ///< of its beginning, then of the face by which it leaves each tet
 };
 
-/// The answer that a walk makes: its tets and places, counted, hashed and summed (docs/spec/volume.md, V4 and V5).
+/// The answer that a walk makes: its tets and places, counted, hashed and summed (docs/spec/volume.md, S4 and S5).
 [[nodiscard]] Segments summary_of(const CrossedTets& walk);
 
-/// Judges the answers of task segments to given rays (docs/spec/volume.md, V7). Shares nothing with the kernels but the
+/// Judges the answers of task segments to given rays (docs/spec/volume.md, S7). Shares nothing with the kernels but the
 /// walk, which the answer must follow from, and which is judged in double precision with margins. A ray whose exact
 /// line crosses the same tets has agreed; another is a tie, with the largest distance of its faces from the ray.
 /// answers: by ray, in the set's order. mesh_of_packed: the scene's number of each packed tet. walk_of: the walk of a

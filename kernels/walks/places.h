@@ -1,5 +1,5 @@
 // Where a ray meets a face, as an integer that both tets of the face compute alike, whatever the order in which they
-// list its corners: docs/spec/volume.md, V2.
+// list its corners: docs/spec/volume.md, S2.
 #ifndef TETRACE_KERNELS_WALKS_PLACES_H
 #define TETRACE_KERNELS_WALKS_PLACES_H
 

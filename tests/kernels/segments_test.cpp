@@ -1,4 +1,4 @@
-// Task segments on rays that are built to break a walk, and the places of V2.
+// Task segments on rays that are built to break a walk, and the places of S2.
 #include "scenes/load.h"
 #include "tests/support/crossed_tets.h"
 #include "tests/support/hard_rays.h"
