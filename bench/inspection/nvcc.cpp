@@ -108,10 +108,7 @@ std::string text_of(const fs::path& file)
 /// As kernel.cu calls it.
 std::string entry_name(const EntryPoint& point, const cuda::ProgramId& program)
 {
-    const char* const prefix = point.entry == Entry::inside   ? "inside"
-                               : point.entry == Entry::rays   ? "rays"
-                               : point.entry == Entry::search ? "search"
-                                                              : "trace";
+    const std::string_view prefix = point.entry == Entry::outside ? "trace" : name_of(point.entry);
     return fmt::format("{}_{}_{}", prefix, name_of(point.kernel.schedule), program.name());
 }
 
