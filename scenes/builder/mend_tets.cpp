@@ -15,8 +15,6 @@
 namespace tetrace {
 namespace {
 
-// Of moves and of removals each, a second or two; a mesh that needs more cannot be mended.
-constexpr std::uint64_t max_tests = 20'000'000;
 constexpr float step_size = 0x1p-24f; // the spacing of floats in [1/2, 1)
 constexpr int tries_of_cavity = 500, cavity_growth = 2;
 constexpr std::uint64_t topology_cost = 32;            // of a tet, in tests
@@ -75,7 +73,10 @@ void add_simplices(const Tet& tet, std::uint32_t but, std::uint32_t and_but, Sim
 
 class TetMender {
 public:
-    TetMender(TetMesh& mesh, const std::vector<Freedom>& freedom) : mesh_(mesh), freedom_(freedom), links_(mesh) {}
+    TetMender(TetMesh& mesh, const std::vector<Freedom>& freedom, std::uint64_t tests)
+        : mesh_(mesh), freedom_(freedom), links_(mesh), moves_left_(tests), removals_left_(tests)
+    {
+    }
 
     // Whether it changed anything.
     bool mend(const std::vector<std::uint32_t>& bad, bool may_remove)
@@ -315,16 +316,16 @@ private:
     TetMesh& mesh_;
     const std::vector<Freedom>& freedom_;
     LinkedTets links_;
-    std::uint64_t moves_left_ = max_tests, removals_left_ = max_tests, cavity_tests_ = max_cavity_tests;
+    std::uint64_t moves_left_, removals_left_, cavity_tests_ = max_cavity_tests; // tests
     std::uint32_t cavities_ = max_cavities;
 };
 
 } // namespace
 
-Rounding mend_tets(TetMesh& mesh, const std::vector<Freedom>& freedom)
+Rounding mend_tets(TetMesh& mesh, const std::vector<Freedom>& freedom, std::uint64_t tests)
 {
     constexpr int max_passes = 16, max_moving_passes = 6;
-    TetMender mender(mesh, freedom);
+    TetMender mender(mesh, freedom, tests);
     auto bad = mender.bad_tets();
     mender.done.damaged = bad.size();
     bool may_remove = false;
