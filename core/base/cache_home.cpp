@@ -61,6 +61,17 @@ fs::path make_temporary()
     return {};
 }
 
+/// Closes all files but the standard input. Kernels before 5.9, and filters of system calls, lack the call for many.
+void keep_only_input()
+{
+    if (::close_range(STDIN_FILENO + 1, ~0u, 0) == 0) return;
+    constexpr int most = 65536; // a limit may be none
+    const long limit = ::sysconf(_SC_OPEN_MAX);
+    const int end = limit < 0 || limit > most ? most : static_cast<int>(limit);
+    for (int file = STDIN_FILENO + 1; file < end; ++file)
+        ::close(file);
+}
+
 /// In a process of its own, to which no signal of a terminal comes: waits until the other end of the pipe is closed,
 /// and removes the folder unless something was written to it first. It holds no stream: a reader of this program's
 /// output does not wait for it.
@@ -68,7 +79,7 @@ fs::path make_temporary()
 {
     ::setsid();
     ::dup2(pipe, STDIN_FILENO);
-    ::close_range(STDIN_FILENO + 1, ~0u, 0);
+    keep_only_input();
     char word = 0;
     ssize_t got = 0;
     do
@@ -145,7 +156,10 @@ void CacheHome::start_remover()
     int ends[2] = {};
     if (::pipe2(ends, O_CLOEXEC) != 0) return;
     remover_ = ::fork();
-    if (remover_ == 0) wait_and_remove(temporary_, ends[0]);
+    if (remover_ == 0) {
+        ::close(ends[1]); // else it would wait for itself
+        wait_and_remove(temporary_, ends[0]);
+    }
     ::close(ends[0]);
     pipe_ = ends[1];
 }
@@ -155,7 +169,8 @@ void CacheHome::dismiss_remover()
     if (pipe_ < 0) return;
     ::close(pipe_);
     pipe_ = -1;
-    if (remover_ > 0) ::waitpid(remover_, nullptr, 0);
+    // One that was killed removed nothing; a process that was forked from this one has none.
+    if (remover_ > 0 && ::waitpid(remover_, nullptr, 0) == remover_) remover_ = -1;
 }
 
 std::string CacheHome::note() const

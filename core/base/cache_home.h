@@ -17,8 +17,8 @@ namespace tetrace {
 /// Gives this process, and those that it starts, a temporary folder for caches if the usual one cannot be written to,
 /// as in containers: PoCL has no device without one. XDG_CACHE_HOME then names it, as do POCL_CACHE_DIR and
 /// MESA_SHADER_CACHE_DIR if they were set to folders that cannot be written to. Make it before any driver is loaded and
-/// any thread is started. The folder is removed with it, and by a process that waits for this one's
-/// end if a signal is that.
+/// any thread is started. The folder is removed with it, unless keep() was called; if a signal ends this process, by
+/// another that waits for its end.
 class CacheHome {
 public:
     CacheHome();
@@ -39,7 +39,7 @@ private:
     std::filesystem::path temporary_;
     bool runs_programs_ = true; ///< whether code in temporary_ may be loaded
     bool keeps_ = false;
-    pid_t remover_ = -1; ///< removes temporary_ when this process has ended
+    pid_t remover_ = -1; ///< removes temporary_ when this process has ended; -1: there is none
     int pipe_ = -1;      ///< to it
 };
 

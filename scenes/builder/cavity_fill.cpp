@@ -9,7 +9,7 @@
 
 namespace tetrace {
 
-FaceSide side_of(const std::array<std::uint32_t, 4>& tet, std::size_t face)
+FaceSide face_side_of(const std::array<std::uint32_t, 4>& tet, std::size_t face)
 {
     const auto& [a, b, c] = face_corners[face];
     FaceSide side = {tet[a], tet[b], tet[c]};
@@ -25,7 +25,7 @@ FaceSide reversed(const FaceSide& side)
 bool CavityFill::find(const std::set<std::uint32_t>& needed)
 {
     if (front_.empty()) return has_all(needed);
-    if (tries_-- <= 0) return false;
+    if (tries_-- <= 0 || tests_ == 0) return false;
     FaceSide hardest{};
     std::vector<std::uint32_t> apexes;
     std::size_t fewest = vertices_.size() + 1;
@@ -38,6 +38,8 @@ bool CavityFill::find(const std::set<std::uint32_t>& needed)
         if (fewest == 0) return false;
     }
     for (const std::uint32_t apex : apexes) {
+        if (tests_ == 0) return false;
+        spend(front_.size() + closed_.size());
         const auto front = front_, closed = closed_;
         add(hardest, apex);
         if (find(needed)) return true;
@@ -46,6 +48,11 @@ bool CavityFill::find(const std::set<std::uint32_t>& needed)
         tets_.pop_back();
     }
     return false;
+}
+
+void CavityFill::spend(std::size_t tests)
+{
+    tests_ -= std::min<std::uint64_t>(tests_, tests);
 }
 
 bool CavityFill::has_all(std::set<std::uint32_t> needed) const
@@ -60,8 +67,10 @@ const std::vector<std::uint32_t>& CavityFill::vertices_above(const FaceSide& sid
 {
     const auto [known, is_new] = above_.try_emplace(side);
     const auto& [a, b, c] = side;
+    if (!is_new) return known->second;
+    spend(vertices_.size());
     for (const std::uint32_t apex : vertices_)
-        if (is_new && orientation(points_[apex], points_[a], points_[b], points_[c]) < 0) known->second.push_back(apex);
+        if (orientation(points_[apex], points_[a], points_[b], points_[c]) < 0) known->second.push_back(apex);
     return known->second;
 }
 
@@ -71,6 +80,7 @@ std::vector<std::uint32_t> CavityFill::apexes_of(const FaceSide& side, std::size
     std::vector<std::uint32_t> apexes;
     for (const std::uint32_t apex : vertices_above(side)) {
         if (apexes.size() == limit) break;
+        spend(1);
         if (may_add(side, apex)) apexes.push_back(apex);
     }
     return apexes;
@@ -79,7 +89,7 @@ std::vector<std::uint32_t> CavityFill::apexes_of(const FaceSide& side, std::size
 bool CavityFill::may_add(const FaceSide& side, std::uint32_t apex) const
 {
     for (std::size_t face = 1; face < 4; ++face) {
-        const FaceSide other = side_of({apex, side[0], side[1], side[2]}, face);
+        const FaceSide other = face_side_of({apex, side[0], side[1], side[2]}, face);
         if (closed_.contains(other) || (!front_.contains(other) && front_.contains(reversed(other)))) return false;
     }
     return true;
@@ -89,7 +99,7 @@ void CavityFill::add(const FaceSide& side, std::uint32_t apex)
 {
     tets_.push_back({apex, side[0], side[1], side[2]});
     for (std::size_t face = 0; face < 4; ++face) {
-        const FaceSide each = side_of(tets_.back(), face);
+        const FaceSide each = face_side_of(tets_.back(), face);
         closed_.insert(each);
         if (front_.erase(each) == 0) front_.insert(reversed(each));
     }

@@ -15,7 +15,9 @@ namespace tetrace {
 /// One side of a face: its corners as the tet on that side sees them, counter-clockwise, the least number first.
 using FaceSide = std::array<std::uint32_t, 3>;
 
-[[nodiscard]] FaceSide side_of(const std::array<std::uint32_t, 4>& tet, std::size_t face);
+/// The inner side of the face across corner `face` of a positive tet.
+[[nodiscard]] FaceSide face_side_of(const std::array<std::uint32_t, 4>& tet, std::size_t face);
+/// The same face as the tet beyond it sees it.
 [[nodiscard]] FaceSide reversed(const FaceSide& side);
 
 /// A search for positive tets that fill a cavity: side after side of what is not yet filled, that with the fewest
@@ -23,10 +25,10 @@ using FaceSide = std::array<std::uint32_t, 3>;
 class CavityFill {
 public:
     /// front: the cavity's sides, seen from inside. vertices: those that tets may have, the front's among them. The
-    /// search ends after so many tries.
-    CavityFill(std::span<const Float3> points, std::set<FaceSide> front, const std::set<std::uint32_t>& vertices,
-               int tries)
-        : points_(points), front_(std::move(front)), vertices_(vertices), tries_(tries)
+    /// search ends after so many tries, or when no tests are left; it takes those that it spends.
+    CavityFill(std::span<const Float3> points, std::set<FaceSide> front, std::set<std::uint32_t> vertices, int tries,
+               std::uint64_t& tests)
+        : points_(points), front_(std::move(front)), vertices_(std::move(vertices)), tries_(tries), tests_(tests)
     {
     }
 
@@ -37,6 +39,7 @@ public:
     [[nodiscard]] const std::vector<std::array<std::uint32_t, 4>>& tets() const { return tets_; }
 
 private:
+    void spend(std::size_t tests);
     [[nodiscard]] bool has_all(std::set<std::uint32_t> needed) const;
     [[nodiscard]] const std::vector<std::uint32_t>& vertices_above(const FaceSide& side);
     [[nodiscard]] std::vector<std::uint32_t> apexes_of(const FaceSide& side, std::size_t limit);
@@ -49,6 +52,7 @@ private:
     std::map<FaceSide, std::vector<std::uint32_t>> above_;
     std::vector<std::array<std::uint32_t, 4>> tets_;
     int tries_;
+    std::uint64_t& tests_;
 };
 
 } // namespace tetrace

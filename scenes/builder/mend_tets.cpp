@@ -1,7 +1,7 @@
 #include "scenes/builder/mend_tets.h"
 
 #include "core/base/exact.h"
-#include "scenes/builder/cavity_fill.h"
+#include "scenes/builder/linked_tets.h"
 
 #include <algorithm>
 #include <iterator>
@@ -15,10 +15,12 @@
 namespace tetrace {
 namespace {
 
-constexpr std::uint64_t max_tests = 20'000'000; // a second or two; a mesh that needs more cannot be mended
-constexpr float step_size = 0x1p-24f;           // the spacing of floats in [1/2, 1)
+constexpr float step_size = 0x1p-24f; // the spacing of floats in [1/2, 1)
 constexpr int tries_of_cavity = 500, cavity_growth = 2;
-constexpr std::uint32_t max_cavities = 1000; // of a mesh
+constexpr std::uint64_t topology_cost = 32;            // of a tet, in tests
+constexpr std::uint32_t max_cavities = 1000;           // of a mesh
+constexpr std::uint64_t max_cavity_tests = 10'000'000; // of all of them
+constexpr std::size_t max_cavity_size = 400;           // in tets
 constexpr std::uint32_t nothing = std::numeric_limits<std::uint32_t>::max();
 
 using Direction = std::array<int, 3>;
@@ -71,11 +73,9 @@ void add_simplices(const Tet& tet, std::uint32_t but, std::uint32_t and_but, Sim
 
 class TetMender {
 public:
-    TetMender(TetMesh& mesh, const std::vector<Freedom>& freedom)
-        : mesh_(mesh), freedom_(freedom), tet_of_(mesh.vertices.size(), nothing), is_gone_(mesh.tets.size(), false)
+    TetMender(TetMesh& mesh, const std::vector<Freedom>& freedom, std::uint64_t tests)
+        : mesh_(mesh), freedom_(freedom), links_(mesh), moves_left_(tests), removals_left_(tests)
     {
-        for (std::uint32_t i = 0; i < mesh.tets.size(); ++i)
-            note(i);
     }
 
     // Whether it changed anything.
@@ -93,21 +93,7 @@ public:
             if (is_there_and_bad(i)) bad.push_back(i);
         return bad;
     }
-    void drop_gone_tets()
-    {
-        std::vector<std::uint32_t> place(mesh_.tets.size());
-        std::uint32_t kept = 0;
-        for (std::uint32_t i = 0; i < place.size(); ++i) {
-            if (is_gone_[i]) continue;
-            mesh_.tets[kept] = mesh_.tets[i];
-            place[i] = kept++;
-        }
-        mesh_.tets.resize(kept);
-        for (Tet& tet : mesh_.tets)
-            for (std::uint32_t& half_face : tet.neighbours)
-                if (half_face != NO_HALF_FACE)
-                    half_face = make_half_face(place[half_face_tet(half_face)], half_face_index(half_face));
-    }
+    void drop_gone_tets() { links_.drop_gone(); }
 
     Rounding done;
 
@@ -123,7 +109,7 @@ private:
                 ++done.moved_points;
             else if (may_remove && remove(vertex))
                 ++done.removed_points;
-            else if (may_remove && refill_around(star(vertex)))
+            else if (may_remove && cavities_ > 0 && refill_around(links_.star(vertex)))
                 ++done.refilled;
             else
                 continue;
@@ -135,60 +121,46 @@ private:
     {
         return freedom_[vertex].steps > 0 && allowed(freedom_[vertex], {1, 1, 1});
     }
-    [[nodiscard]] bool is_there_and_bad(std::uint32_t tet) const { return !is_gone_[tet] && is_bad(mesh_.tets[tet]); }
+    [[nodiscard]] bool is_there_and_bad(std::uint32_t tet) const
+    {
+        return !links_.is_gone(tet) && is_bad(mesh_.tets[tet]);
+    }
     [[nodiscard]] bool is_bad(const Tet& tet) const
     {
         const auto& [a, b, c, d] = tet.vertices;
         const auto& v = mesh_.vertices;
         return orientation(v[a], v[b], v[c], v[d]) >= 0;
     }
-    void note(std::uint32_t tet)
-    {
-        for (const std::uint32_t vertex : mesh_.tets[tet].vertices)
-            tet_of_[vertex] = tet;
-    }
-    // All tets that have the vertex.
-    [[nodiscard]] std::vector<std::uint32_t> star(std::uint32_t vertex) const
-    {
-        std::vector<std::uint32_t> tets{tet_of_[vertex]};
-        std::set<std::uint32_t> seen{tets.front()};
-        for (std::size_t i = 0; i < tets.size(); ++i) {
-            const Tet& tet = mesh_.tets[tets[i]];
-            for (std::size_t face = 0; face < 4; ++face)
-                if (tet.vertices[face] != vertex && tet.neighbours[face] != NO_HALF_FACE &&
-                    seen.insert(half_face_tet(tet.neighbours[face])).second)
-                    tets.push_back(half_face_tet(tet.neighbours[face]));
-        }
-        return tets;
-    }
     // Counts up to `limit`, and takes what it spent from the budget. Tets with the corner `without` do not count.
-    std::size_t count_bad(const std::vector<std::uint32_t>& tets, std::size_t limit, std::uint32_t without = nothing)
+    std::size_t count_bad(const std::vector<std::uint32_t>& tets, std::size_t limit, std::uint64_t& budget,
+                          std::uint32_t without = nothing)
     {
         std::size_t bad = 0;
         for (std::size_t i = 0; i < tets.size() && bad < limit; ++i) {
             const Tet& tet = mesh_.tets[tets[i]];
             if (has(tet, without)) continue;
             bad += is_bad(tet) ? 1 : 0;
-            budget_ -= budget_ > 0 ? 1 : 0;
+            budget -= budget > 0 ? 1 : 0;
         }
         return bad;
     }
 
     bool move(std::uint32_t vertex)
     {
+        if (moves_left_ == 0) return false;
         static const auto all_directions = directions();
         const Freedom& freedom = freedom_[vertex];
         const Float3 home = mesh_.vertices[vertex];
-        const auto around = star(vertex);
-        const std::size_t bad = count_bad(around, around.size());
-        for (std::uint32_t steps = 1; steps <= freedom.steps && budget_ > 0; steps *= 2) {
+        const auto around = links_.star(vertex);
+        const std::size_t bad = count_bad(around, around.size(), moves_left_);
+        for (std::uint32_t steps = 1; steps <= freedom.steps && moves_left_ > 0; steps *= 2) {
             for (const auto& direction : all_directions) {
                 if (!allowed(freedom, direction)) continue;
                 for (int axis = 0; axis < 3; ++axis)
                     mesh_.vertices[vertex][axis] =
                         snap_to_grid(home[axis] + static_cast<float>(direction[static_cast<std::size_t>(axis)]) *
                                                       static_cast<float>(steps) * step_size);
-                if (count_bad(around, bad) < bad) return true;
+                if (count_bad(around, bad, moves_left_) < bad) return true;
             }
         }
         mesh_.vertices[vertex] = home;
@@ -198,9 +170,9 @@ private:
     // Puts the vertex onto the neighbour that leaves the fewest bad tets, if these are fewer than now.
     bool remove(std::uint32_t vertex)
     {
-        if (!may_go(vertex)) return false;
-        const auto around = star(vertex);
-        const std::size_t bad = count_bad(around, around.size());
+        if (!may_go(vertex) || removals_left_ == 0) return false;
+        const auto around = links_.star(vertex);
+        const std::size_t bad = count_bad(around, around.size(), removals_left_);
         std::set<std::uint32_t> neighbours;
         for (const std::uint32_t tet : around)
             for (const std::uint32_t corner : mesh_.tets[tet].vertices)
@@ -209,15 +181,16 @@ private:
         const Float3 home = mesh_.vertices[vertex];
         for (const std::uint32_t onto : neighbours) {
             mesh_.vertices[vertex] = mesh_.vertices[onto];
-            candidates.emplace(count_bad(around, bad, onto), onto);
+            candidates.emplace(removals_left_ > 0 ? count_bad(around, bad, removals_left_, onto) : bad, onto);
         }
         mesh_.vertices[vertex] = home;
-        for (const auto& [left, onto] : candidates)
-            if (left < bad && budget_ > 0 && keeps_surface(vertex, onto, around) &&
-                keeps_topology(vertex, onto, around)) {
-                collapse(vertex, onto, around);
-                return true;
-            }
+        for (const auto& [left, onto] : candidates) {
+            if (left >= bad || removals_left_ == 0) return false;
+            removals_left_ -= std::min<std::uint64_t>(removals_left_, topology_cost * around.size());
+            if (!keeps_surface(vertex, onto, around) || !keeps_topology(vertex, onto, around)) continue;
+            collapse(vertex, onto, around);
+            return true;
+        }
         return false;
     }
     [[nodiscard]] bool keeps_topology(std::uint32_t vertex, std::uint32_t onto,
@@ -228,7 +201,7 @@ private:
             add_simplices(mesh_.tets[tet], vertex, nothing, of_vertex);
             if (has(mesh_.tets[tet], onto)) add_simplices(mesh_.tets[tet], vertex, onto, of_edge);
         }
-        for (const std::uint32_t tet : star(onto))
+        for (const std::uint32_t tet : links_.star(onto))
             add_simplices(mesh_.tets[tet], onto, nothing, of_onto);
         std::ranges::set_intersection(of_vertex, of_onto, std::inserter(shared, shared.end()));
         return shared == of_edge;
@@ -303,119 +276,56 @@ private:
             if (!has(tet, onto)) continue;
             const std::uint32_t far = place_of(tet, vertex), near = place_of(tet, onto);
             const std::uint32_t triangle = tet.faces[far] != FREE_FACE ? tet.faces[far] : tet.faces[near];
-            join(tet.neighbours[far], tet.neighbours[near], triangle);
-            join(tet.neighbours[near], tet.neighbours[far], triangle);
-            is_gone_[index] = true;
+            links_.join(tet.neighbours[far], tet.neighbours[near], triangle);
+            links_.join(tet.neighbours[near], tet.neighbours[far], triangle);
+            links_.remove(index);
         }
-        for (const std::uint32_t index : around) {
-            if (is_gone_[index]) continue;
-            mesh_.tets[index].vertices[place_of(mesh_.tets[index], vertex)] = onto;
-            note(index);
-        }
+        for (const std::uint32_t index : around)
+            if (!links_.is_gone(index)) links_.rename(index, vertex, onto);
     }
     // Refills these tets, or more around them.
     bool refill_around(std::vector<std::uint32_t> cavity)
     {
-        for (int growth = 0; growth <= cavity_growth && cavities_ > 0; ++growth) {
+        for (int growth = 0; growth <= cavity_growth && cavity.size() <= max_cavity_size && cavities_ > 0; ++growth) {
             --cavities_;
             if (refill(cavity)) return true;
-            std::set<std::uint32_t> grown(cavity.begin(), cavity.end());
-            for (const std::uint32_t index : cavity)
-                for (std::size_t face = 0; face < 4; ++face)
-                    if (mesh_.tets[index].neighbours[face] != NO_HALF_FACE &&
-                        mesh_.tets[index].faces[face] == FREE_FACE)
-                        grown.insert(half_face_tet(mesh_.tets[index].neighbours[face]));
-            cavity.assign(grown.begin(), grown.end());
+            cavity = links_.grown(cavity);
         }
         return false;
     }
-    // What is on the other side of a cavity's face.
-    struct Across {
-        std::uint32_t half_face, triangle;
-    };
-    using Sides = std::map<FaceSide, Across>;
     // Puts positive tets in the place of these, where there are some: their outer sides stay, and vertices inside that
     // may not move.
     bool refill(const std::vector<std::uint32_t>& cavity)
     {
+        CavitySides sides = links_.sides_of(cavity);
+        if (sides.empty()) return false;
         std::set<std::uint32_t> vertices, needed;
         for (const std::uint32_t index : cavity)
             vertices.insert(mesh_.tets[index].vertices.begin(), mesh_.tets[index].vertices.end());
-        Sides sides;
-        if (!find_sides(cavity, sides)) return false;
+        for (const std::uint32_t vertex : vertices)
+            if (!may_go(vertex)) needed.insert(vertex);
         std::set<FaceSide> front;
         for (const auto& [side, across] : sides)
             front.insert(side);
-        for (const std::uint32_t vertex : vertices)
-            if (!may_go(vertex)) needed.insert(vertex);
-        CavityFill fill(mesh_.vertices, std::move(front), vertices, tries_of_cavity);
+        CavityFill fill(mesh_.vertices, std::move(front), std::move(vertices), tries_of_cavity, cavity_tests_);
         if (!fill.find(needed)) return false;
-        for (const std::uint32_t index : cavity)
-            is_gone_[index] = true;
-        for (const auto& corners : fill.tets())
-            add(corners, sides);
+        links_.replace(cavity, std::move(sides), fill.tets());
         return true;
-    }
-    // False if there is an occlusive face inside.
-    bool find_sides(const std::vector<std::uint32_t>& cavity, Sides& sides) const
-    {
-        const std::set<std::uint32_t> inside(cavity.begin(), cavity.end());
-        for (const std::uint32_t index : cavity) {
-            const Tet& tet = mesh_.tets[index];
-            for (std::size_t face = 0; face < 4; ++face) {
-                const std::uint32_t half_face = tet.neighbours[face];
-                const bool is_inner = half_face != NO_HALF_FACE && inside.contains(half_face_tet(half_face));
-                if (is_inner && tet.faces[face] != FREE_FACE) return false;
-                if (!is_inner) sides.emplace(side_of(tet.vertices, face), Across{half_face, tet.faces[face]});
-            }
-        }
-        return true;
-    }
-    // A tet with some of these sides; its others are for those that follow.
-    void add(const std::array<std::uint32_t, 4>& corners, Sides& sides)
-    {
-        const auto index = static_cast<std::uint32_t>(mesh_.tets.size());
-        mesh_.tets.push_back({corners,
-                              {NO_HALF_FACE, NO_HALF_FACE, NO_HALF_FACE, NO_HALF_FACE},
-                              {FREE_FACE, FREE_FACE, FREE_FACE, FREE_FACE}});
-        is_gone_.push_back(false);
-        note(index);
-        for (std::uint32_t face = 0; face < 4; ++face) {
-            const FaceSide side = side_of(corners, face);
-            const std::uint32_t own = make_half_face(index, face);
-            const auto known = sides.find(side);
-            if (known == sides.end()) {
-                sides.emplace(reversed(side), Across{own, FREE_FACE});
-                continue;
-            }
-            const auto [half_face, triangle] = known->second;
-            join(own, half_face, triangle);
-            join(half_face, own, triangle);
-        }
-    }
-    void join(std::uint32_t half_face, std::uint32_t to, std::uint32_t triangle)
-    {
-        if (half_face == NO_HALF_FACE) return;
-        Tet& tet = mesh_.tets[half_face_tet(half_face)];
-        tet.neighbours[half_face_index(half_face)] = to;
-        tet.faces[half_face_index(half_face)] = triangle;
-        note(half_face_tet(half_face));
     }
 
     TetMesh& mesh_;
     const std::vector<Freedom>& freedom_;
-    std::vector<std::uint32_t> tet_of_;
-    std::vector<bool> is_gone_;
-    std::uint64_t budget_ = max_tests;
+    LinkedTets links_;
+    std::uint64_t moves_left_, removals_left_, cavity_tests_ = max_cavity_tests; // tests
     std::uint32_t cavities_ = max_cavities;
 };
 
 } // namespace
 
-Rounding mend_tets(TetMesh& mesh, const std::vector<Freedom>& freedom)
+Rounding mend_tets(TetMesh& mesh, const std::vector<Freedom>& freedom, std::uint64_t tests)
 {
-    constexpr int max_passes = 16;
-    TetMender mender(mesh, freedom);
+    constexpr int max_passes = 16, max_moving_passes = 6;
+    TetMender mender(mesh, freedom, tests);
     auto bad = mender.bad_tets();
     mender.done.damaged = bad.size();
     bool may_remove = false;
@@ -423,7 +333,7 @@ Rounding mend_tets(TetMesh& mesh, const std::vector<Freedom>& freedom)
         const bool changed = mender.mend(bad, may_remove);
         bad = mender.bad_tets();
         if (!changed && may_remove) break;
-        if (!changed) may_remove = true;
+        may_remove = may_remove || !changed || pass + 1 >= max_moving_passes;
     }
     mender.done.repaired = mender.done.damaged - bad.size();
     mender.drop_gone_tets();

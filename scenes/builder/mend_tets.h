@@ -29,8 +29,9 @@ struct Rounding {
 /// keeps one that leaves fewer bad tets around it. Where that does not help, it puts the vertex onto a neighbour, and
 /// the tets between them vanish: one on an input triangle goes along it, one on an edge of input triangles along that
 /// edge, and one whose freedom lacks an axis stays. Else it puts other tets in the place of those around the vertex or
-/// the tet. Deterministic; vertices without freedom never move or go; the number of tries is bounded. mesh: half-faces
-/// and faces are sound. Vertices keep their numbers, and some may be of no tet.
-Rounding mend_tets(TetMesh& mesh, const std::vector<Freedom>& freedom);
+/// the tet. Deterministic; vertices without freedom never move or go. mesh: half-faces and faces are sound. Vertices
+/// keep their numbers, and some may be of no tet. tests: how many tests of a tet the moves may take, and as many again
+/// the removals; the default takes a second or two of each. Cavities have a bound of their own.
+Rounding mend_tets(TetMesh& mesh, const std::vector<Freedom>& freedom, std::uint64_t tests = 20'000'000);
 
 } // namespace tetrace

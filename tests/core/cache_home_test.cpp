@@ -1,11 +1,17 @@
 #include "core/base/cache_home.h"
 #include "tests/support/temporary_folder.h"
 
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstddef>
 #include <optional>
 #include <thread>
 
@@ -41,6 +47,16 @@ protected:
     ScopedVariable home{"HOME", closed_}, xdg{"XDG_CACHE_HOME", nullptr};
     ScopedVariable pocl{"POCL_CACHE_DIR", nullptr}, mesa{"MESA_SHADER_CACHE_DIR", nullptr};
 };
+
+/// Answers a system call of this process, and of those that it starts, so from now on. False where filters are refused.
+bool answer(unsigned call, unsigned with)
+{
+    sock_filter filter[] = {BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
+                            BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, call, 0, 1), BPF_STMT(BPF_RET | BPF_K, with),
+                            BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW)};
+    const sock_fprog program{std::size(filter), filter};
+    return ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 && ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
+}
 
 } // namespace
 
@@ -79,6 +95,35 @@ TEST_F(CacheHomes, temporary_folder_is_removed_after_a_signal_ends_the_program)
         for (int i = 0; i < 3000 && temporary_folders() > 0; ++i)
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
         EXPECT_EQ(temporary_folders(), 0u);
+    }
+}
+
+// The process that removes it begins with setsid(), and closes the files that it has from this one.
+TEST_F(CacheHomes, temporary_folder_is_removed_without_its_remover_and_without_close_range)
+{
+    for (const auto& [call, with] : {std::pair(SYS_close_range, SECCOMP_RET_ERRNO | unsigned{ENOSYS}),
+                                     std::pair(SYS_setsid, unsigned{SECCOMP_RET_KILL_PROCESS})}) {
+        int ends[2] = {};
+        ASSERT_EQ(::pipe(ends), 0);
+        const pid_t program = ::fork();
+        if (program == 0) {
+            ::alarm(30); // in place of waiting for ever
+            if (!answer(static_cast<unsigned>(call), with)) ::_exit(77);
+            bool is_released = false;
+            {
+                const CacheHome cache;
+                ::close(ends[1]);
+                char word = 0;
+                is_released = temporary_folders() == 1 && ::read(ends[0], &word, 1) == 0;
+            }
+            ::_exit(is_released && temporary_folders() == 0 ? 0 : 1);
+        }
+        ::close(ends[1]); // first, for the program waits until nobody has it
+        ::close(ends[0]);
+        int status = 0;
+        ASSERT_EQ(::waitpid(program, &status, 0), program);
+        if (WIFEXITED(status) && WEXITSTATUS(status) == 77) GTEST_SKIP() << "system calls cannot be filtered here";
+        EXPECT_EQ(status, 0) << call;
     }
 }
 

@@ -192,6 +192,45 @@ TEST(SteinerRounding, leaves_what_may_not_move)
     EXPECT_EQ(mesh, before);
 }
 
+TEST(SteinerRounding, puts_other_tets_in_place_where_no_point_may_move)
+{
+    // Three tets around an edge that passes outside the triangle across it, where two fit.
+    TetMesh mesh{{{0, 0, 0.25f}, {0.5f, 0, 0.25f}, {0, 0.5f, 0.25f}, {0.375f, 0.375f, 0.5f}, {0.375f, 0.375f, 0}}, {}};
+    for (std::uint32_t i = 0; i < 3; ++i)
+        mesh.tets.push_back(
+            {{3, 4, i, (i + 1) % 3},
+             {NO_HALF_FACE, NO_HALF_FACE, make_half_face((i + 1) % 3, 3), make_half_face((i + 2) % 3, 2)},
+             {FREE_FACE, FREE_FACE, FREE_FACE, FREE_FACE}});
+    const std::vector<Freedom> none(5);
+    EXPECT_EQ(mend_tets(mesh, none), (Rounding{.damaged = 1, .repaired = 1, .refilled = 1}));
+    EXPECT_EQ(mesh.tets.size(), 2u);
+    EXPECT_FALSE(find_defect(mesh, 0));
+}
+
+TEST(SteinerRounding, removes_points_though_moves_took_all_their_tests)
+{
+    constexpr std::uint32_t count = 50;
+    const TetMesh one = four_tets({0.125f, 0.125f, -0.25f}); // too far off for a move
+    TetMesh mesh;
+    std::vector<Freedom> freedom(5 * count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        mesh.vertices.insert(mesh.vertices.end(), one.vertices.begin(), one.vertices.end());
+        freedom[5 * i + 4] = {{true, true, true}, 1 << 12};
+        for (Tet tet : one.tets) {
+            for (std::uint32_t k = 0; k < 4; ++k) {
+                tet.vertices[k] += 5 * i;
+                if (tet.neighbours[k] != NO_HALF_FACE) tet.neighbours[k] += make_half_face(4 * i, 0);
+            }
+            mesh.tets.push_back(tet);
+        }
+    }
+    TetMesh same = mesh;
+    EXPECT_EQ(mend_tets(mesh, freedom, 10'000),
+              (Rounding{.damaged = count, .repaired = count, .removed_points = count}));
+    EXPECT_EQ(mesh.tets.size(), count);
+    EXPECT_LT(mend_tets(same, freedom, 1'000).removed_points, count) << "removals have an end, too";
+}
+
 namespace {
 
 /// Of each vertex, the triangles that faces at it are parts of; and whether it may move: Steiner points off the
@@ -234,8 +273,9 @@ TEST_F(Builder, mends_tets_that_a_steiner_point_far_off_its_place_inverts)
 {
     const Scene scene = build(options(flat_cube(1), DomainKind::wide, "pq1.6a0.0002"));
     const Vertices vertices = vertices_of(scene);
-    constexpr std::size_t enough = 12;
+    constexpr std::size_t enough = 7;
     std::array<std::size_t, 3> tried{}, mended{}; // inside, in a triangle, on an edge
+    std::uint64_t removed = 0;
     for (std::uint32_t vertex = 0; vertex < vertices.freedom.size(); ++vertex) {
         const std::size_t kind = std::min<std::size_t>(vertices.triangles[vertex].size(), 2);
         if (vertices.freedom[vertex].steps == 0 || tried[kind] == enough) continue;
@@ -247,6 +287,7 @@ TEST_F(Builder, mends_tets_that_a_steiner_point_far_off_its_place_inverts)
         mesh.vertices[vertex] = snap_to_grid(to_float(from + (to - from) * 1.25));
         const Rounding done = mend_tets(mesh, vertices.freedom);
         EXPECT_GT(done.damaged, 0u);
+        removed += done.removed_points;
         if (done.repaired < done.damaged) continue;
         ++mended[kind];
         EXPECT_FALSE(find_defect(mesh, scene.mesh.triangles.size()));
@@ -255,6 +296,7 @@ TEST_F(Builder, mends_tets_that_a_steiner_point_far_off_its_place_inverts)
         after.tets = mesh;
         expect_faces_inside_their_triangles(after);
     }
+    EXPECT_GT(removed, 0u);
     for (std::size_t kind = 0; kind < 3; ++kind) {
         EXPECT_GE(tried[kind], 5u) << kind;
         EXPECT_GE(4 * mended[kind], 3 * tried[kind]) << kind;
@@ -270,17 +312,17 @@ TEST(CavityFill, finds_tets_where_there_are_some)
         points.push_back(to_float({0.5 * std::cos(angle), 0.5 * std::sin(angle), i < 3 ? 0.0 : 0.5}));
     }
     points.push_back({0, 0, 0.25f});
-    const auto fill = [&](bool bent, bool with_middle) {
+    const auto fill = [&](bool bent, bool with_middle, std::uint64_t tests = 10'000) {
         std::set<FaceSide> front{{0, 1, 2}, {3, 5, 4}};
         for (std::uint32_t i = 0; i < 3; ++i) {
             const std::uint32_t a = i, b = (i + 1) % 3, c = 3 + a, d = 3 + b;
             for (const std::array<std::uint32_t, 4>& tet :
                  {std::array{6u, a, c, bent ? d : b}, {6u, bent ? a : c, d, b}})
-                front.insert(side_of(tet, 0));
+                front.insert(face_side_of(tet, 0));
         }
         std::set<std::uint32_t> vertices{0, 1, 2, 3, 4, 5};
         if (with_middle) vertices.insert(6);
-        CavityFill cavity(points, front, vertices, 1000);
+        CavityFill cavity(points, front, vertices, 1000, tests);
         const bool found = cavity.find(with_middle ? std::set<std::uint32_t>{6} : std::set<std::uint32_t>{});
         double volume = 0;
         for (const auto& [a, b, c, d] : cavity.tets()) {
@@ -298,6 +340,7 @@ TEST(CavityFill, finds_tets_where_there_are_some)
         EXPECT_TRUE(fill(false, with_middle).first);
         EXPECT_NEAR(fill(false, with_middle).second, outwards, 1e-6);
     }
+    EXPECT_FALSE(fill(false, true, 20).first) << "no tests are left";
 }
 
 TEST_F(Builder, fills_both_domains_round_every_kind_of_mesh)
@@ -542,8 +585,7 @@ TEST_F(AbsurdOutput, names_surface_faces_that_no_tet_has)
 
 TEST_F(AbsurdOutput, names_inverted_tets_and_who_made_them)
 {
-    ASSERT_GT(output_.points.size(), output_.input_points);
-    const Double3 apex = output_.points.back(); // a Steiner point
-    output_.points.back() = {-apex.x, -apex.y, -apex.z};
+    Double3& point = output_.points[output_.input_points - 1]; // on the domain's sides, so that nothing may mend it
+    point = {-point.x, -point.y, -point.z};
     expect_absurd("0 were so in TetGen's double coordinates already");
 }

@@ -20,7 +20,7 @@ using Edge = std::pair<std::uint32_t, std::uint32_t>;
     return std::minmax(a, b);
 }
 
-/// From corner i of a triangle to the next.
+/// The edge from corner i of a triangle to the next.
 [[nodiscard]] inline Edge side_of(const std::array<std::uint32_t, 3>& triangle, std::size_t i)
 {
     return edge_of(triangle[i], triangle[(i + 1) % 3]);
