@@ -18,7 +18,7 @@ struct Unanswered {
     bool of_one_scene = true;
 
     [[nodiscard]] bool is_fault() const { return status != Status::skipped && status != Status::unsupported; }
-    /// "needs --budget 7m", or the first line of the reason.
+    /// "--budget 7m is enough", or the first line of the reason.
     [[nodiscard]] std::string shortly() const
     {
         if (common == what) return what.substr(0, what.find('\n'));
