@@ -322,12 +322,19 @@ std::vector<Deviation> deviations_of(const std::vector<DefectRun>& runs)
     return deviations;
 }
 
-std::vector<std::string> unmentioned_of(const std::vector<DefectRun>& runs, const Expectations& expectations)
+/// Those with a finding.
+std::set<std::string> implementations_of(const std::vector<DefectRun>& runs)
 {
     std::set<std::string> implementations;
     for (const DefectRun& run : runs)
-        if (finding_of(run) && !expectations.contains(run.device.implementation))
-            implementations.insert(run.device.implementation);
+        if (finding_of(run)) implementations.insert(run.device.implementation);
+    return implementations;
+}
+
+std::vector<std::string> unmentioned_of(const std::vector<DefectRun>& runs, const Expectations& expectations)
+{
+    auto implementations = implementations_of(runs);
+    std::erase_if(implementations, [&](const std::string& name) { return expectations.contains(name); });
     return {implementations.begin(), implementations.end()};
 }
 
@@ -393,8 +400,8 @@ Report defect_report(const std::vector<DefectRun>& runs, const std::vector<std::
         section["defects"].push_back(run_json(run));
     section["missing_devices"] = missing;
     if (expectations != nullptr) {
-        set_expectations(section, *expectations, deviations_of(runs), unmentioned_of(runs, *expectations),
-                         unknown_of(runs, *expectations));
+        set_expectations(section, *expectations, implementations_of(runs), deviations_of(runs),
+                         unmentioned_of(runs, *expectations), unknown_of(runs, *expectations));
         set_verdict(section, verdict_on(runs));
     }
     const nlohmann::json json = {{"tetrace", std::move(section)}};

@@ -99,12 +99,12 @@ Sheet verdict_line(const ResultValue& section)
 }
 
 void set_expectations(nlohmann::json& section, const Expectations& expectations,
-                      const std::vector<Deviation>& deviations, const std::vector<std::string>& unmentioned,
-                      const std::vector<std::string>& unknown)
+                      const std::set<std::string>& implementations, const std::vector<Deviation>& deviations,
+                      const std::vector<std::string>& unmentioned, const std::vector<std::string>& unknown)
 {
     std::set<std::string> files;
     for (const auto& [implementation, expectation] : expectations)
-        files.insert(expectation.file);
+        if (implementations.contains(implementation)) files.insert(expectation.file);
     nlohmann::json list = nlohmann::json::array();
     for (const Deviation& one : deviations) {
         nlohmann::json& object = list.emplace_back();
@@ -117,6 +117,14 @@ void set_expectations(nlohmann::json& section, const Expectations& expectations,
     }
     section["expectations"] = {{"files", files}, {"deviations", std::move(list)}, {"unmentioned", unmentioned}};
     if (!unknown.empty()) section["expectations"]["unknown"] = unknown;
+}
+
+std::set<std::string> implementations_of(const CheckJudgement& judgement)
+{
+    std::set<std::string> implementations;
+    for (const JudgedDevice& device : judgement.devices)
+        implementations.insert(device.implementation);
+    return implementations;
 }
 
 std::vector<std::string> unknown_of(const CheckJudgement& judgement)

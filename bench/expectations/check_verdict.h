@@ -36,11 +36,14 @@ void set_verdict(nlohmann::json& section, const std::optional<CheckVerdict>& ver
 /// The line of a result's verdict; nothing for a result without.
 [[nodiscard]] Sheet verdict_line(const ResultValue& section);
 
-/// In a result, under "expectations": the files that count, what is not simply as it should be, the implementations
-/// that no file mentions, and sentences on what files say of rows and items that the run cannot have.
+/// In a result, under "expectations": the files on implementations of the run, what is not simply as it should be, the
+/// implementations that no file mentions, and sentences on what files say of rows and items that the run cannot have.
 void set_expectations(nlohmann::json& section, const Expectations& expectations,
-                      const std::vector<Deviation>& deviations, const std::vector<std::string>& unmentioned,
-                      const std::vector<std::string>& unknown = {});
+                      const std::set<std::string>& implementations, const std::vector<Deviation>& deviations,
+                      const std::vector<std::string>& unmentioned, const std::vector<std::string>& unknown = {});
+
+/// Of a judgement's devices.
+[[nodiscard]] std::set<std::string> implementations_of(const CheckJudgement& judgement);
 
 /// Of a judgement's devices, those that no file mentions, each implementation once.
 [[nodiscard]] std::vector<std::string> unmentioned_of(const CheckJudgement& judgement);

@@ -103,12 +103,20 @@ std::string expected_name(const RowKey& key)
 
 namespace {
 
+/// The kernels that rows of a kind of rays may have.
+std::vector<KernelId> kernels_for(RayKind kind)
+{
+    std::vector<KernelId> kernels = kernels_of(kind == RayKind::primary ? Task::trace : Task::rays);
+    if (has_segments(kind)) std::ranges::copy(kernels_of(Task::segments), std::back_inserter(kernels));
+    return kernels;
+}
+
 /// The names that rows of the backend may have among exceptions.
 std::set<std::string> names_on(const Backend& backend)
 {
     std::set<std::string> names;
     for (const RayKind kind : values_of<RayKind>())
-        for (const KernelId& kernel : kernels_of(kind == RayKind::primary ? Task::trace : Task::rays)) {
+        for (const KernelId& kernel : kernels_for(kind)) {
             if (!backend.has_kernel(kernel)) continue;
             for (const RayOrder ray_order : values_of<RayOrder>())
                 for (const TetOrder order : values_of<TetOrder>())

@@ -111,7 +111,7 @@ public:
         if (hits.empty()) return image; // given rays, of which this view has none
         trace_timed(row, image, view);
         image.totals = checked_totals(row, view);
-        image.entering = scene_->entering(row.key.rays, row.key.ray_order, view);
+        image.entering = scene_->entering(row.key, view);
         image.lost_at_device_cap = count_lost_at_device_cap(row, hits);
         image.visits = count_visits(row, view, hits, threads_);
         image.hit_hash = hash_of(hits);

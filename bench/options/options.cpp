@@ -232,7 +232,7 @@ Options defaults_of(Verb verb)
 /// A workload decides them.
 constexpr std::string_view decided_by_workload[] = {"--scene",  "--repair",    "--no-repair", "--domain",     "--tets",
                                                     "--effort", "--divisions", "--switches",  "--camera-set", "--views",
-                                                    "--size",   "--rays",      "--ray-order"};
+                                                    "--size",   "--rays",      "--ray-order", "--task"};
 
 void check_workload(Verb verb, const CLI::App& app)
 {

@@ -16,8 +16,7 @@ const char* const how_to_read_ratios =
 /// Identifies one chart.
 struct RatioKey {
     std::size_t file;
-    std::string scene;
-    RayKind rays;
+    std::string scene, rays; ///< as rays_text()
     DeviceKind kind;
     std::string reference; ///< API
 
@@ -52,7 +51,7 @@ void add_ratio(std::vector<RatioGroup>& groups, const ReportInput& input, std::s
     if (!row.row->device_kind) name.reject("is of a row without a device");
     const ReportRow& reference = row_named(input, file, ratio.at("reference"));
     const bool noisy = is_noisy(row) || is_noisy(reference);
-    const RatioKey key{file, row.row->scene, row.rays, row.kind(), reference.api};
+    const RatioKey key{file, row.row->scene, rays_text(row.rays, row.are_segments), row.kind(), reference.api};
     auto group = std::ranges::find_if(groups, [&](const RatioGroup& other) { return other.key == key; });
     if (group == groups.end()) group = groups.insert(groups.end(), {key, {}});
     group->intervals.push_back({row.name(), row.kernel() + "  " + row.api, noisy ? "noisy" : "",
@@ -64,8 +63,7 @@ Html chart_of(const RatioGroup& group, const ReportInput& input)
 {
     const RatioKey& key = group.key;
     const std::string what = fmt::format(
-        "{}, {}{}", key.scene, key.rays == RayKind::primary ? "" : fmt::format("{} rays, ", name_of(key.rays)),
-        plural_of(key.kind));
+        "{}, {}{}", key.scene, key.rays == name_of(RayKind::primary) ? "" : key.rays + " rays, ", plural_of(key.kind));
     const std::string title = with_letter(what, key.file, input.files.size());
     return figure(title,
                   draw(IntervalChart{fmt::format("Rates over those of {}: {}", key.reference, title),

@@ -92,6 +92,15 @@ void read_kernel(ReportRow& row, const ResultValue& value)
                            unless_usual(schedule, "tiles"), ray_order ? unless_usual(ray_order->line(), "tiles") : "");
 }
 
+/// The key is only in rows of segments.
+bool is_of_segments(const ResultValue& row)
+{
+    const auto value = row.find("task");
+    if (!value) return false;
+    if (value->line() != name_of(Task::segments)) value->reject("is not 'segments', the only task that rows name");
+    return true;
+}
+
 bool same_rays(const ResultScene& a, const ResultScene& b)
 {
     return a.name == b.name && a.hash == b.hash && a.camera_set == b.camera_set &&
@@ -144,7 +153,7 @@ std::vector<ReportRow> report_rows(const ResultFile& result, std::size_t file)
             row.api += ", " + counted(threads, "thread", "threads");
         row.device = result.head.shown(result.rows[i].device);
         read_into(row.rays, items[i].at("rays"));
-        row.are_segments = items[i].find("task").has_value();
+        row.are_segments = is_of_segments(items[i]);
         read_shares(row, items[i]);
         row.rate = rate_of(items[i], result.rows[i].samples_s);
         if (row.rate && !row.row->device_kind) items[i].reject("has a rate and no device");
@@ -172,6 +181,11 @@ std::vector<RowGroup> rated_groups(const std::vector<ResultFile>& files, const s
         });
     order_groups(groups);
     return groups;
+}
+
+std::string rays_text(RayKind rays, bool are_segments)
+{
+    return std::string(are_segments ? "segments of " : "").append(name_of(rays));
 }
 
 std::string views_text(const ResultScene& scene)

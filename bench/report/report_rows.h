@@ -37,21 +37,21 @@ struct ReportRow {
     std::optional<RowRate> rate;                  ///< only of rows with a device
 
     [[nodiscard]] const std::string& name() const { return row->name; }
-    /// "cdt maria tet80".
-    [[nodiscard]] std::string kernel() const { return std::string(name_of(structure)) + " " + walk; }
+    /// "cdt maria tet80", as kernel_title().
+    [[nodiscard]] std::string kernel() const { return subject() + " " + walk; }
     /// "bvh bvh2 on vulkan".
     [[nodiscard]] std::string label() const { return kernel() + " on " + api; }
     /// For a row with a device. Rows that may be ranked with each other ran on devices of one kind.
     [[nodiscard]] DeviceKind kind() const { return row->device_kind.value(); }
     /// Ends in the kind of rays where they are not primary.
-    [[nodiscard]] std::string kernel_and_rays() const
-    {
-        return std::string(name_of(structure)) + " " + walk_and_rays();
-    }
+    [[nodiscard]] std::string kernel_and_rays() const { return subject() + " " + walk_and_rays(); }
     [[nodiscard]] std::string walk_and_rays() const
     {
         return rays == RayKind::primary ? walk : walk + ", " + std::string(name_of(rays));
     }
+
+private:
+    [[nodiscard]] std::string subject() const { return are_segments ? "segments" : std::string(name_of(structure)); }
 };
 
 /// What Contest asks of a row. Precondition: the kernel is known.
@@ -81,6 +81,8 @@ struct RowGroup {
 [[nodiscard]] std::vector<RowGroup> rated_groups(const std::vector<ResultFile>& files,
                                                  const std::vector<ReportRow>& rows);
 
+/// "random", "segments of random".
+[[nodiscard]] std::string rays_text(RayKind rays, bool are_segments);
 /// "4 views of smoke at 1024 × 1024".
 [[nodiscard]] std::string views_text(const ResultScene& scene);
 /// "bunny: 4 views of smoke at 1024 × 1024, primary rays".

@@ -2,6 +2,7 @@
 
 #include "bench/options/name_filter.h"
 #include "bench/results/work_recipe.h"
+#include "bench/rows/sized_scene.h"
 #include "bench/statistics/statistics.h"
 #include "core/base/error.h"
 
@@ -186,15 +187,36 @@ std::string why_untimed(const char* label, const ResultRow* row)
     return fmt::format("{}: {}", label, has_answers(row->status) ? "no samples" : name_of(row->status));
 }
 
+std::string name_without_size(const ResultRow& row)
+{
+    std::string name = row.name;
+    const std::string size = size_in(row.scene);
+    if (const std::size_t at = name.find(size); !size.empty() && at != std::string::npos) name.erase(at, size.size());
+    return name;
+}
+
+/// The other file's row of the same name, in either file with or without the size of images that it has.
+const ResultRow* partner_of(const ResultFile& file, const ResultRow& row, const ResultFile& other)
+{
+    if (const ResultRow* same = other.find_row(row.name); same != nullptr || row.scene.empty()) return same;
+    const ResultScene* const scene = file.find_scene(row.scene); // null of one that could not be loaded
+    const auto found = std::ranges::find_if(other.rows, [&](const ResultRow& one) {
+        if (scene == nullptr || name_without_size(one) != name_without_size(row)) return false;
+        const ResultScene* const its = other.find_scene(one.scene);
+        return its != nullptr && its->width == scene->width && its->height == scene->height;
+    });
+    return found == other.rows.end() ? nullptr : &*found;
+}
+
 std::vector<ComparedRow> paired_rows(const ResultFile& before, const ResultFile& after, const std::string& filter)
 {
     const NameFilter names("--filter", filter);
     const auto kept = [&](const ResultRow& row) { return names.keeps(row.name); };
     std::vector<ComparedRow> rows;
     for (const ResultRow* row : before.timed_rows())
-        if (kept(*row)) rows.push_back({row, after.find_row(row->name), {}, {}, {}});
+        if (kept(*row)) rows.push_back({row, partner_of(before, *row, after), {}, {}, {}});
     for (const ResultRow* row : after.timed_rows())
-        if (kept(*row) && before.find_row(row->name) == nullptr) rows.push_back({nullptr, row, {}, {}, {}});
+        if (kept(*row) && partner_of(after, *row, before) == nullptr) rows.push_back({nullptr, row, {}, {}, {}});
     for (ComparedRow& row : rows)
         row.outcome = outcome_of(row);
     return rows;

@@ -15,11 +15,19 @@ namespace {
 
 constexpr std::uint64_t oldest_schema_version = 1;
 constexpr std::size_t longest_name = 1000; // of a row, in bytes
+constexpr std::uint64_t largest_side = 16384, most_threads = 4096;
 
 std::string line_or_nothing(const ResultValue& object, const char* key)
 {
     const auto value = object.find(key);
     return value ? value->line() : std::string();
+}
+
+std::uint64_t count_up_to(std::uint64_t most, const ResultValue& value)
+{
+    const std::uint64_t count = value.count();
+    if (count == 0 || count > most) value.reject(fmt::format("is {}, not 1 to {}", count, most));
+    return count;
 }
 
 double duration(const ResultValue& value)
@@ -63,8 +71,8 @@ ResultScene read_scene(const ResultValue& value)
     if (const auto hash = value.find("camera_set_hash")) scene.camera_set_hash = hash->hash();
     for (const ResultValue& view : value.at("views").items())
         scene.views.push_back(view.count());
-    scene.width = value.at("width").count();
-    scene.height = value.at("height").count();
+    scene.width = count_up_to(largest_side, value.at("width"));
+    scene.height = count_up_to(largest_side, value.at("height"));
     return scene;
 }
 
@@ -107,7 +115,7 @@ ResultRow read_any_row(const ResultValue& value)
         row.driver = line_or_nothing(*device, "driver");
         if (const auto index = value.find("device_index")) row.device_index = index->count();
     }
-    if (const auto threads = value.find("threads")) row.threads = threads->count();
+    if (const auto threads = value.find("threads")) row.threads = count_up_to(most_threads, *threads);
     row.samples_s = read_samples(value);
     if (const auto times = value.find("times")) {
         if (const auto pulse = times->find("pulse")) row.pulse_ratio = pulse->number();

@@ -174,12 +174,6 @@ std::vector<RowKey> rows_of_scene(const Options& options, const std::string& sce
     return rows;
 }
 
-/// Segments go on to where a ray leaves the domain.
-bool has_end(RayKind kind)
-{
-    return kind == RayKind::shadow || kind == RayKind::ao;
-}
-
 /// Rows of a task, trace or segments: of primary rays, and of given rays in each order asked for, kind after kind.
 std::vector<RowKey> rows_of_kinds(const Options& options, Task task, const std::string& scene,
                                   const std::vector<Backend*>& backends)
@@ -189,7 +183,7 @@ std::vector<RowKey> rows_of_kinds(const Options& options, Task task, const std::
     const bool are_segments = task == Task::segments;
     std::vector<RowKey> rows;
     for (const RayKind kind : options.rays.empty() ? std::vector{RayKind::primary} : options.rays) {
-        if (are_segments && has_end(kind)) continue;
+        if (are_segments && !has_segments(kind)) continue;
         const bool is_given = are_segments || kind != RayKind::primary;
         const auto& kernels = are_segments ? segment_kernels : is_given ? given_kernels : all_kernels();
         const auto orders = is_given && !options.ray_orders.empty() ? options.ray_orders : std::vector{RayOrder::tiles};
@@ -377,6 +371,11 @@ std::vector<std::string> missing_devices(const Options& options, const std::vect
             sentences.push_back(fmt::format("{}: no device: {}", backend->name(), backend->devices().front().reason));
     }
     return sentences;
+}
+
+bool has_segments(RayKind kind)
+{
+    return kind != RayKind::shadow && kind != RayKind::ao;
 }
 
 std::string kernel_title(const RowKey& key)

@@ -53,6 +53,9 @@ struct RowKey {
                                                    std::string_view math, std::string_view schedule,
                                                    Task task = Task::trace);
 
+/// Whether rays of the kind have rows of task segments, which go on to where a ray leaves the domain.
+[[nodiscard]] bool has_segments(RayKind kind);
+
 /// Name without the scene, for tables under the scene's heading: "cdt maria tet80".
 [[nodiscard]] std::string kernel_title(const RowKey& key);
 

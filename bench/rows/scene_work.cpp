@@ -13,14 +13,30 @@
 
 namespace tetrace {
 
-SceneWork::SceneWork(LoadedScene loaded, const Options& options, std::string arguments)
-    : loaded_(std::move(loaded)), arguments_(std::move(arguments)), counts_(count_faces(loaded_.scene.tets)),
-      width_(options.width), height_(options.height), view_numbers_(selected_views(options)),
-      threads_(resolved_threads(options))
+namespace {
+
+std::shared_ptr<SharedScene> shared_scene(LoadedScene loaded)
 {
-    const TriangleMesh& mesh = loaded_.scene.mesh;
+    const TetMeshCounts counts = count_faces(loaded.scene.tets);
+    return std::make_shared<SharedScene>(SharedScene{std::move(loaded), counts, {}, {}});
+}
+
+} // namespace
+
+SceneWork::SceneWork(LoadedScene loaded, const Options& options, std::string arguments)
+    : SceneWork(shared_scene(std::move(loaded)), options, std::move(arguments), {})
+{
+    label_ = shared_->loaded.scene.name;
+}
+
+SceneWork::SceneWork(std::shared_ptr<SharedScene> shared, const Options& options, std::string arguments,
+                     std::string label)
+    : shared_(std::move(shared)), label_(std::move(label)), arguments_(std::move(arguments)), width_(options.width),
+      height_(options.height), view_numbers_(selected_views(options)), threads_(resolved_threads(options))
+{
+    const TriangleMesh& mesh = loaded().scene.mesh;
     const auto cameras = options.own_cameras ? options.own_cameras->cameras(bounding_sphere(mesh))
-                                             : make_cameras(options.camera_set, mesh, loaded_.views);
+                                             : make_cameras(options.camera_set, mesh, loaded().views);
     if (options.own_cameras)
         camera_set_hash_ = options.own_cameras->hash();
     else if (options.camera_set == CameraSet::frame)
@@ -30,7 +46,7 @@ SceneWork::SceneWork(LoadedScene loaded, const Options& options, std::string arg
         views_.push_back(make_view(cameras.at(number), width_, height_));
         origins.push_back(views_.back().origin);
     }
-    const ViewStarts found = find_starts(loaded_.scene, origins);
+    const ViewStarts found = find_starts(loaded().scene, origins);
     for (std::size_t i = 0; i < views_.size(); ++i) {
         views_[i].origin = found.starts[i].origin; // rays of every structure start there
         start_tets_.push_back(found.starts[i].tet);
@@ -42,24 +58,25 @@ SceneWork::SceneWork(LoadedScene loaded, const Options& options, std::string arg
 const Packed& SceneWork::packed(Layout layout, TetOrder order)
 {
     const std::pair key{layout, order};
-    if (const auto found = packed_.find(key); found != packed_.end()) return found->second;
+    if (const auto found = shared_->packed.find(key); found != shared_->packed.end()) return found->second;
     const bool is_bvh = structure_of(layout) == Structure::bvh;
     const BuiltBvh* const built = is_bvh ? &bvh() : nullptr;
     const Stopwatch watch;
     Packed made;
-    made.data = is_bvh ? pack_bvh(loaded_.scene.mesh, built->bvh, layout) : pack(loaded_.scene, layout, order);
+    made.data = is_bvh ? pack_bvh(loaded().scene.mesh, built->bvh, layout) : pack(loaded().scene, layout, order);
     made.pack_s = watch.seconds();
     if (is_bvh) {
         made.bvh_build_s = built->build_s;
         made.fall_back = built->fall_back.empty() ? made.data.fall_back : built->fall_back;
     }
-    return packed_.emplace(key, std::move(made)).first->second;
+    return shared_->packed.emplace(key, std::move(made)).first->second;
 }
 
 const BuiltBvh& SceneWork::bvh()
 {
-    if (!bvh_) bvh_ = build_bvh(loaded_.scene.mesh, threads_);
-    return *bvh_;
+    auto& bvh = shared_->bvh;
+    if (!bvh) bvh = build_bvh(loaded().scene.mesh, threads_);
+    return *bvh;
 }
 
 void SceneWork::keep_first_views(std::size_t count)
@@ -69,13 +86,14 @@ void SceneWork::keep_first_views(std::size_t count)
     start_tets_.resize(count);
 }
 
-std::uint64_t SceneWork::entering(RayKind kind, RayOrder order, std::size_t view)
+std::uint64_t SceneWork::entering(const RowKey& key, std::size_t view)
 {
-    const auto [entry, is_new] = entering_.try_emplace({kind, view});
+    const bool is_image = key.rays == RayKind::primary && key.kernel.task != Task::segments;
+    const auto [entry, is_new] = entering_.try_emplace({key.rays, is_image, view});
     if (!is_new) return entry->second;
-    const Domain& domain = loaded_.scene.domain;
-    entry->second = kind == RayKind::primary ? count_entering(domain, views_.at(view), width_, height_)
-                                             : count_entering(domain, given_rays_.set(*this, kind, order, view).rays);
+    const Domain& domain = loaded().scene.domain;
+    entry->second = is_image ? count_entering(domain, views_.at(view), width_, height_)
+                             : count_entering(domain, given_rays_.set(*this, key.rays, key.ray_order, view).rays);
     return entry->second;
 }
 
@@ -86,8 +104,8 @@ TraceJob SceneWork::job(std::size_t index, const PackedScene* packed, const Devi
     job.width = width_;
     job.height = height_;
     if (packed != nullptr && structure_of(packed->layout) == Structure::cdt)
-        start_in(job, *packed, loaded_.scene, start_tets_[index]);
-    job.max_steps = step_cap(counts_.tets, device);
+        start_in(job, *packed, loaded().scene, start_tets_[index]);
+    job.max_steps = step_cap(counts().tets, device);
     return job;
 }
 
@@ -107,9 +125,7 @@ SceneWork load_work(const SceneRequest& request, const Options& options, const s
 
 SceneWork resized(const SceneWork& scene, const SceneRequest& request, const Options& options, const std::string& label)
 {
-    LoadedScene loaded = scene.loaded();
-    loaded.scene.name = label;
-    return {std::move(loaded), options, scene_arguments(request, options)};
+    return {scene.shared(), options, scene_arguments(request, options), label};
 }
 
 std::vector<std::string> missing_default_scenes(const Options& options)

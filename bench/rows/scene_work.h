@@ -8,8 +8,10 @@
 #include "scenes/load.h"
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -40,19 +42,30 @@ struct ViewStarts {
 /// exact location. Throws Error{internal} if the two differ.
 [[nodiscard]] ViewStarts find_starts(const Scene& scene, const std::vector<Float3>& origins);
 
+/// A scene as all sizes of its images share it.
+struct SharedScene {
+    LoadedScene loaded;
+    TetMeshCounts counts;
+    std::optional<BuiltBvh> bvh;
+    std::map<std::pair<Layout, TetOrder>, Packed> packed;
+};
+
 /// A loaded scene with everything that its rows share: packed forms, views, start tets.
 class SceneWork {
 public:
     /// Takes the views that the options select, and finds the tets where their rays start.
-    /// arguments: see arguments().
+    /// arguments: see arguments(). label: its name in rows.
+    SceneWork(std::shared_ptr<SharedScene> shared, const Options& options, std::string arguments, std::string label);
+    /// The same with the scene's own name.
     SceneWork(LoadedScene loaded, const Options& options, std::string arguments = {});
 
-    [[nodiscard]] const LoadedScene& loaded() const { return loaded_; }
-    [[nodiscard]] const std::string& label() const { return loaded_.scene.name; }
+    [[nodiscard]] const LoadedScene& loaded() const { return shared_->loaded; }
+    [[nodiscard]] const std::shared_ptr<SharedScene>& shared() const { return shared_; }
+    [[nodiscard]] const std::string& label() const { return label_; }
     /// The part of a command line that asks for this scene and these images again; empty if no command line asked
     /// for it.
     [[nodiscard]] const std::string& arguments() const { return arguments_; }
-    [[nodiscard]] const TetMeshCounts& counts() const { return counts_; }
+    [[nodiscard]] const TetMeshCounts& counts() const { return shared_->counts; }
     [[nodiscard]] const std::vector<std::uint32_t>& view_numbers() const { return view_numbers_; }
     /// Of the numbers of the whole camera set, if its name does not determine them: the user's own, and `frame`.
     [[nodiscard]] const std::optional<std::uint64_t>& camera_set_hash() const { return camera_set_hash_; }
@@ -78,8 +91,8 @@ public:
     /// Forgets all views but the first ones: an interrupted run ends with those that it has completed.
     void keep_first_views(std::size_t count);
 
-    /// The number of a view's rays of a kind that enter the domain, counted at the first call. order: of given rays.
-    [[nodiscard]] std::uint64_t entering(RayKind kind, RayOrder order, std::size_t view);
+    /// The number of a row's rays in a view that enter the domain, counted at the first call for these rays.
+    [[nodiscard]] std::uint64_t entering(const RowKey& key, std::size_t view);
 
     /// The tet of the scene that contains a view's origin; NO_TET if the origin is outside the domain.
     [[nodiscard]] std::uint32_t start_tet(std::size_t view) const { return start_tets_.at(view); }
@@ -93,9 +106,8 @@ public:
                                const Device& device = reference_backend().devices().front()) const;
 
 private:
-    LoadedScene loaded_;
-    std::string arguments_;
-    TetMeshCounts counts_;
+    std::shared_ptr<SharedScene> shared_;
+    std::string label_, arguments_;
     std::uint32_t width_, height_;
     std::vector<std::uint32_t> view_numbers_;
     std::optional<std::uint64_t> camera_set_hash_;
@@ -104,17 +116,16 @@ private:
     double locate_s_ = 0;
     std::optional<StartWalk> start_walk_;
     unsigned threads_;
-    std::optional<BuiltBvh> bvh_;
-    std::map<std::pair<Layout, TetOrder>, Packed> packed_;
     RayStore given_rays_;
-    std::map<std::pair<RayKind, std::size_t>, std::uint64_t> entering_; ///< by kind and view
+    /// By kind, whether they are an image's and not given, and view.
+    std::map<std::tuple<RayKind, bool, std::size_t>, std::uint64_t> entering_;
 };
 
 /// Loads a scene, prints its messages, and prepares it. label: its name in rows; empty: its scene_label().
 /// Throws what load_scene() throws.
 [[nodiscard]] SceneWork load_work(const SceneRequest& request, const Options& options, const std::string& label = {});
 
-/// The same scene with the images of other options. label: its name in rows.
+/// The same scene, which both share, with the images of other options. label: its name in rows.
 [[nodiscard]] SceneWork resized(const SceneWork& scene, const SceneRequest& request, const Options& options,
                                 const std::string& label);
 

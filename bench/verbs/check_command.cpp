@@ -51,8 +51,9 @@ nlohmann::json check_json(const Checked& checked, const Options& options)
     section["missing_devices"] = checked.missing;
     set_verdict(section, verdict_of(checked, options));
     if (checked.expectations && !is_interrupted())
-        set_expectations(section, *checked.expectations, checked.judgement.deviations,
-                         unmentioned_of(checked.judgement), unknown_of(checked.judgement));
+        set_expectations(section, *checked.expectations, implementations_of(checked.judgement),
+                         checked.judgement.deviations, unmentioned_of(checked.judgement),
+                         unknown_of(checked.judgement));
     return {{"tetrace", std::move(section)}};
 }
 

@@ -58,6 +58,21 @@ TEST(AxisLines, of_sizes_say_what_a_launch_and_a_million_rays_cost)
     EXPECT_NEAR(std::get<double>(cells[6]), 100, 1e-6) << "ms";
 }
 
+TEST(AxisLines, of_images_with_equally_many_rays_show_no_cost_of_launches)
+{
+    BenchResult result;
+    for (const auto& [width, height] : {std::pair(512u, 128u), std::pair(256u, 256u)}) {
+        const std::string name = "bunny/size:" + std::to_string(width);
+        result.scenes.push_back({{"name", name}, {"width", width}, {"height", height}});
+        result.rows.push_back(row_at(name, 65536));
+    }
+    const Table table = size_table(size_lines(result));
+    EXPECT_EQ(table.columns().size(), 6u) << "both sizes";
+    const auto& cells = table.rows().front();
+    EXPECT_TRUE(is_empty(cells[4]));
+    EXPECT_NEAR(std::get<double>(cells[5]), 1e3 * (1e-3 + 65536e-7) / 65536e-6, 1e-6) << "ms, all of it";
+}
+
 TEST(AxisLines, leave_out_a_cost_of_launches_that_noise_explains)
 {
     const Table table = size_table(size_lines(sized_run(0.9)));

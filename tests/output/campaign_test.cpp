@@ -137,6 +137,23 @@ TEST_F(CampaignPage, compares_only_rows_of_the_same_work)
     EXPECT_TRUE(contains(section_of(page_of({result_of("one", 1)}), "compared-machines"), "no section"));
 }
 
+TEST_F(CampaignPage, keeps_segments_apart_from_what_is_traced)
+{
+    json result = result_of("a", 0);
+    json& rows = result["tetrace"]["rows"];
+    json other = rows[0];
+    other.update({{"name", "segments/openmp"}, {"task", "segments"}, {"threads", 1}});
+    rows.push_back(other);
+    const Campaign campaign = campaign_of({result});
+    const auto titled = [&](const char* part) {
+        return std::ranges::count_if(campaign.groups, [&](const auto& group) { return contains(group.title, part); });
+    };
+    EXPECT_EQ(titled("segments of primary rays"), 1);
+    EXPECT_TRUE(std::ranges::any_of(campaign.machines, [](const CampaignMachine& machine) {
+        return machine.name.ends_with(", 1 thread");
+    })) << "a row's own number of threads";
+}
+
 TEST_F(CampaignPage, says_how_much_work_has_no_counterpart)
 {
     json more = result_of("two", 1);

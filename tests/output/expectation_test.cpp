@@ -133,8 +133,10 @@ TEST_F(ExpectationFiles, have_one_implementation_by_their_name_or_several_and_th
     EXPECT_EQ(both.at(driver).rows.at("tiles"), Finding::error);
     EXPECT_EQ(both.at("other-3").defects.at("loop"), DefectFinding::wrong);
     Json section;
-    set_expectations(section, both, {}, {});
+    set_expectations(section, both, {driver, "other-3"}, {}, {});
     EXPECT_EQ(section["expectations"]["files"], Json({(folder_ / "all.json").string()})) << "which counts for both";
+    set_expectations(section, both, {"unmentioned-4"}, {}, {});
+    EXPECT_EQ(section["expectations"]["files"], Json::array()) << "of what ran, no file says anything";
 }
 
 TEST_F(ExpectationFiles, keep_what_a_run_says_nothing_about)
@@ -236,6 +238,22 @@ TEST(CheckJudgement, of_what_a_run_showed_passes_the_same_run_and_no_other)
     }
 }
 
+TEST(CheckJudgement, of_segments_names_rows_that_there_are)
+{
+    RowRecord row = wrong(good_row(Method::project));
+    row.key.kernel.task = Task::segments;
+    row.key.rays = RayKind::random;
+    Rows rows = {row, good_row()};
+    for (RowRecord& one : rows)
+        one.key.backend = reference_backend().name();
+    const Expectations shown = expectations_of(rows, false);
+    EXPECT_EQ(exit_code(rows, judge_rows(rows, &shown, false)), 0);
+    EXPECT_EQ(names_of_no_row(shown.at(driver), reference_backend()), std::vector<std::string>());
+    Expectation other = shown.at(driver);
+    other.exceptions = {{"segments/project/tet80/shadow", Finding::wrong}};
+    EXPECT_EQ(names_of_no_row(other, reference_backend()).size(), 1u) << "segments have no end";
+}
+
 TEST(CheckJudgement, of_wrong_rows_alone_expects_other_rows_to_conform)
 {
     const Rows rows = {wrong(good_row())};
@@ -277,7 +295,7 @@ TEST(CheckJudgement, reports_names_and_self_tests_that_the_run_cannot_have)
     EXPECT_TRUE(contains(unknown[2], "self_test: no row of this run on vulkan has one")) << unknown[2];
     EXPECT_EQ(unknown_of(judge_rows({good_row()}, &expectations, false)).size(), 2u);
     Json section;
-    set_expectations(section, expectations, {}, {}, unknown);
+    set_expectations(section, expectations, {}, {}, {}, unknown);
     EXPECT_TRUE(contains(expectation_lines(ResultValue(section, "r.json")).text(), "cdt/marja/tet80"));
 }
 

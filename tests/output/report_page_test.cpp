@@ -19,6 +19,16 @@ std::vector<std::string> drawings_of(const std::string& page)
     return drawings;
 }
 
+/// Cells of a matrix that lead to a row.
+std::size_t rows_linked(const std::string& section)
+{
+    std::size_t count = 0;
+    for (std::size_t at = section.find("<a href=\"#row-"); at != std::string::npos;
+         at = section.find("<a href=\"#row-", at + 1))
+        ++count;
+    return count;
+}
+
 } // namespace
 
 TEST_F(ReportPage, every_row_has_its_mark_or_its_reason)
@@ -152,6 +162,59 @@ TEST_F(ReportPage, what_is_wrong_leads_to_its_row_and_the_reason)
     EXPECT_TRUE(contains(section, "id=\"row-0-0\""));
     EXPECT_TRUE(contains(section, "12 rays differ"));
     EXPECT_TRUE(contains(section_of(page, "answer"), "0 of 1 rows of check are right. " + link + "1 is wrong"));
+}
+
+/// The same rows of task segments, and all at two sizes.
+json with_segments_at_two_sizes()
+{
+    json result = bench_json();
+    json& section = result["tetrace"];
+    const json scene = section["scenes"][0], rows = section["rows"];
+    section["scenes"] = section["rows"] = section["ratios"] = json::array();
+    for (const int width : {24, 48}) {
+        const std::string size = fmt::format("cubes/size:{}x16", width);
+        section["scenes"].push_back(scene);
+        section["scenes"].back().update({{"name", size}, {"width", width}});
+        for (const char* const task : {"trace", "segments"})
+            for (json row : rows) {
+                row["name"] = fmt::format("{}/{}/{}", task, size, row["name"].get<std::string>());
+                row["scene"] = size;
+                if (task == std::string("segments")) row["task"] = task;
+                if (task == std::string("segments") && row.contains("rates")) row["rates"]["mrays_per_s"] = 1.0;
+                section["rows"].push_back(row);
+            }
+    }
+    for (const char* const task : {"trace", "segments"})
+        section["ratios"].push_back({{"row", fmt::format("{}/cubes/size:24x16/row/cuda", task)},
+                                     {"reference", fmt::format("{}/cubes/size:24x16/row/openmp", task)},
+                                     {"ratio", 1.1},
+                                     {"low", 0.9},
+                                     {"high", 1.2}});
+    return result;
+}
+
+TEST_F(ReportPage, segments_are_apart_from_what_is_traced)
+{
+    const std::string page = page_of({with_segments_at_two_sizes()});
+    const std::string sizes = section_of(page, "sizes");
+    for (const char* const row : {"cdt maria tet80  openmp", "segments maria tet80  openmp"})
+        EXPECT_TRUE(contains(sizes, row)) << row << sizes;
+    EXPECT_TRUE(contains(section_of(page, "times"), "segments maria tet80"));
+    EXPECT_EQ(drawings_of(section_of(page, "ratios")).size(), 2u) << "a chart of each task";
+    EXPECT_TRUE(contains(section_of(page, "ratios"), "segments of primary rays"));
+    EXPECT_TRUE(contains(section_of(page, "ratios"), "segments maria tet80"));
+}
+
+TEST_F(ReportPage, what_is_wrong_with_segments_leads_to_their_row)
+{
+    json checked = check_json();
+    json row = row_json("row/vulkan", "vulkan", "emulated", innocent);
+    row.update({{"status", "wrong"}, {"reason", "12 rays"}, {"task", "segments"}, {"rays", "random"}});
+    row.erase("rates");
+    checked["tetrace"]["rows"] = {row};
+    auto& cells = checked["tetrace"]["matrix"]["cubes"];
+    cells["segments maria tet80, random"] = cells["cdt maria tet80"];
+    EXPECT_EQ(rows_linked(section_of(page_of({checked}), "conformance")), 1u) << "not that of the same walk";
 }
 
 TEST_F(ReportPage, what_a_check_was_expected_to_show_is_a_table_and_none_without_expectations)
@@ -347,6 +410,7 @@ TEST_F(ReportPage, values_that_cannot_be_drawn_are_named_with_their_key)
     EXPECT_TRUE(contains(error_with(bench_json(), "/rows/0/rates/mrays_per_s", 0), "rows[0].rates.mrays_per_s"));
     EXPECT_TRUE(contains(error_with(bench_json(), "/rows/0/rates/mrays_per_s", nullptr), "rows[0].rates.mrays_per_s"));
     EXPECT_TRUE(contains(error_with(bench_json(), "/rows/1/times/median_s", "1"), "rows[1].times.median_s"));
+    EXPECT_TRUE(contains(error_with(bench_json(), "/rows/1/task", "search"), "rows[1].task: is not 'segments'"));
     EXPECT_TRUE(contains(error_with(bench_json(), "/devices/0/type", "fpga"), "devices[0].type: is 'fpga'"));
     json nowhere = bench_json();
     nowhere["tetrace"]["rows"][1].erase("device");

@@ -145,6 +145,27 @@ TEST_F(ResultComparisons, lists_rows_that_failed_or_are_missing_and_counts_none_
 }
 
 // The same row, minutes apart, six times slower, and each run is steady by itself.
+TEST_F(ResultComparisons, pairs_rows_of_one_size_among_several_with_those_of_that_size_alone)
+{
+    const auto sized = [](Json result, const std::string& label, int width) {
+        Json scene = result["tetrace"]["scenes"][0];
+        scene.update({{"name", label}, {"width", width}});
+        return scene;
+    };
+    Json many = result_of({timed_row("cdt/cubes/size:24x16/one", 1), timed_row("cdt/cubes/size:48x16/one", 1)});
+    Json& section = many["tetrace"];
+    section["scenes"] = {sized(many, "cubes/size:24x16", 24), sized(many, "cubes/size:48x16", 48)};
+    section["rows"][0]["scene"] = "cubes/size:24x16";
+    section["rows"][1]["scene"] = "cubes/size:48x16";
+    const Json alone = result_of({timed_row("cdt/cubes/one", 1)});
+    for (const bool is_first : {true, false}) {
+        const ResultComparison compared = is_first ? compare(many, alone) : compare(alone, many);
+        ASSERT_EQ(compared.rows.size(), 2u);
+        EXPECT_EQ(compared.count(RowOutcome::compared), 1u);
+        EXPECT_EQ(compared.count(is_first ? RowOutcome::missing : RowOutcome::added), 1u) << "of the other size";
+    }
+}
+
 TEST_F(ResultComparisons, a_machine_that_was_itself_slower_makes_no_regression)
 {
     const Json before = with_pulse(result_of({timed_row("one", 1)}), 0.01);

@@ -205,6 +205,9 @@ TEST_F(ResultFiles, with_a_value_of_another_kind_names_its_key)
     refused("/rows/0/times/samples_s/0", -1.5, "samples_s[0]: is not a duration");
     refused("/scenes/0/width", -24, "tetrace.scenes[0].width: is not a whole number");
     refused("/scenes/0/views/1", 0.5, "tetrace.scenes[0].views[1]: is not a whole number");
+    refused("/scenes/0/width", 0, "tetrace.scenes[0].width: is 0, not 1 to 16384");
+    refused("/scenes/0/height", 1ull << 32, "tetrace.scenes[0].height: is 4294967296, not 1 to 16384");
+    refused("/rows/0/threads", 1'000'000'000'000'000'000, "tetrace.rows[0].threads: is");
     refused("/rows/0/name", "cdt/\x1b[2J", "tetrace.rows[0].name: holds a control character");
 }
 

@@ -85,6 +85,11 @@ TEST(Scores, are_geometric_means_with_an_interval_around_them)
     EXPECT_GT(scores[0].interval.low, expected / 1.0045) << "all medians at their greatest";
     EXPECT_LT(scores[0].interval.high, expected * 1.0045);
     EXPECT_EQ(scores_json(scores)[0]["rows"].size(), 9u);
+    EXPECT_FALSE(scores_json(scores)[0].contains("threads"));
+    auto with_one_thread = rows;
+    for (RowRecord& row : with_one_thread)
+        row.key.threads = 1;
+    EXPECT_EQ(scores_json(scores_of(&scored(), with_one_thread))[0]["threads"], 1);
 }
 
 TEST(Scores, are_given_only_if_each_row_is_ok_and_not_noisy)

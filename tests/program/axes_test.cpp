@@ -27,6 +27,16 @@ protected:
             all.insert(row.at("name"));
         return all;
     }
+    /// What a result says of its rows, but for times.
+    [[nodiscard]] json answers(const char* name) const
+    {
+        json all = json::object();
+        const json result = section(name);
+        for (const json& row : result.at("rows"))
+            all[row.at("name").get<std::string>()] = {row.at("status"), row.at("counts"), row.at("verification"),
+                                                      row.at("views_hash"), row.at("times").at("samples_s").size()};
+        return all;
+    }
 };
 
 } // namespace
@@ -62,6 +72,39 @@ TEST_F(Axes, have_a_row_at_each_size_with_each_number_of_threads)
     const Ended compared = run("compare r.json r.json");
     EXPECT_EQ(compared.code, 0) << compared.errors;
     EXPECT_TRUE(contains(compared.out, "8 of 8 rows")) << compared.out;
+}
+
+TEST_F(Axes, of_two_tasks_are_apart_resumed_and_compared_with_one_size)
+{
+    const std::string arguments = "bench --backend openmp --scene cubes --resolution 3 --size 16,32 --threads 1,2 "
+                                  "--method project --layout tet80 --schedule tiles --task trace,segments --views 0,1 "
+                                  "--samples 5 --sample-time 0 ";
+    ASSERT_EQ(run(arguments + "--out whole.json").code, 0);
+    EXPECT_EQ(names("whole.json").size(), 8u);
+    const Ended shown = run("show whole.json");
+    EXPECT_TRUE(contains(shown.out, "segments project tet80")) << shown.out;
+    EXPECT_TRUE(contains(shown.out, "cdt project tet80"));
+    ASSERT_EQ(run("report whole.json --out page.html").code, 0);
+    EXPECT_TRUE(contains(file("page.html"), "segments project tet80  openmp")) << "a line of its own";
+    EXPECT_EQ(run("compare whole.json whole.json").code, 0);
+    ASSERT_EQ(run(arguments + "--out m1.json --shard 1/2").code, 0);
+    ASSERT_EQ(run(arguments + "--out m2.json --shard 2/2").code, 0);
+    ASSERT_EQ(run("merge m1.json m2.json --out m.json").code, 0);
+    EXPECT_EQ(answers("m.json"), answers("whole.json"));
+
+    {
+        const ScopedVariable disk("LD_PRELOAD", TETRACE_FAULTY_DISK), how("FAULTY_DISK", "sync:6 io");
+        EXPECT_EQ(run(arguments + "--out r.json").code, 2);
+    }
+    ASSERT_TRUE(std::filesystem::exists(folder_ / "r.json.journal"));
+    ASSERT_EQ(run(arguments + "--out r.json --resume").code, 0);
+    EXPECT_EQ(answers("r.json"), answers("whole.json")) << "of each size, number of threads and task";
+
+    std::string alone = arguments;
+    alone.replace(alone.find("16,32"), 5, "32");
+    ASSERT_EQ(run(alone + "--out alone.json").code, 0);
+    const Ended compared = run("compare whole.json alone.json --allow-missing");
+    EXPECT_TRUE(contains(compared.out, "4 of 8 rows")) << compared.out << compared.errors;
 }
 
 TEST_F(Axes, of_shards_are_merged)

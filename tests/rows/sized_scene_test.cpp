@@ -63,6 +63,8 @@ TEST(Axes, refuse_what_no_run_can_have)
     EXPECT_TRUE(contains(refused({"bench", "--threads", "1,x"}), "'x'"));
     EXPECT_TRUE(contains(refused({"bench", "--workload", "default-2026.11", "--size", "64,128"}),
                          "--size: --workload decides it"));
+    EXPECT_TRUE(contains(refused({"bench", "--workload", "default-2026.11", "--task", "trace,segments"}),
+                         "--task: --workload decides it"));
     for (const char* const verb : {"check", "reproduce"})
         EXPECT_TRUE(contains(refused({verb, "--size", "64,128"}), "lists are for 'tetrace bench'")) << verb;
 }

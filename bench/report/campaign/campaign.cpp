@@ -43,9 +43,9 @@ std::string machine_name(const ResultFile& file, const ResultRow& row)
 {
     const std::string host = host_name(file);
     if (*row.device_kind == DeviceKind::gpu) return fmt::format("{} in {}", row.device, host);
-    const auto threads = file.section().find("threads");
-    if (!threads) return host;
-    return fmt::format("{}, {}", host, counted(threads->count(), "thread", "threads"));
+    const auto all = file.section().find("threads");
+    const std::uint64_t threads = row.threads > 0 ? row.threads : all ? all->count() : 0;
+    return threads == 0 ? host : fmt::format("{}, {}", host, counted(threads, "thread", "threads"));
 }
 
 std::string title_of(const ResultFile& file, const ResultRow& row, const std::string& rays)
@@ -107,7 +107,7 @@ ReadResult read_one(const std::filesystem::path& path)
     for (const ReportRow& row : report_rows(file, 0))
         if (row.rate)
             add_rate(read, file, *row.row, row.kernel() + "  " + row.api, row.row->backend + " " + row.layout,
-                     std::string(name_of(row.rays)));
+                     rays_text(row.rays, row.are_segments));
     for (const ResultRow& row : file.searches)
         add_rate(read, file, row, search_label(row), "", "searches");
     return read;
