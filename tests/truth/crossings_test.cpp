@@ -69,9 +69,9 @@ private:
     std::set<std::uint32_t> tets_;
 };
 
-enum class Mistake { left_out, twice, exchanged, appended, ends_early, begins_late };
-constexpr std::array<const char*, 6> mistakes = {"left out", "twice",      "exchanged",
-                                                 "appended", "ends early", "begins late"};
+enum class Mistake { left_out, twice, exchanged, appended, ends_early, begins_late, leaves_by_its_entry };
+constexpr std::array<const char*, 7> mistakes = {"left out",   "twice",       "exchanged",          "appended",
+                                                 "ends early", "begins late", "leaves by its entry"};
 
 using Walk = CrossedTets;
 
@@ -126,6 +126,10 @@ std::optional<Walk> falsified(const Scene& scene, const CrossedScene& tets, Walk
             walk.places.erase(walk.places.begin());
         }
         break;
+    case Mistake::leaves_by_its_entry:
+        if (i + 1 != walk.tets.size()) return std::nullopt;
+        walk.places.back() = walk.places[i];
+        break;
     }
     return walk.tets.empty() ? std::nullopt : std::optional(walk);
 }
@@ -149,7 +153,7 @@ void expect_mistakes_caught(const Scene& scene, const std::string& name, std::ui
         const DeepTets deep(scene, all.rays[i]);
         ASSERT_TRUE(deep.are_all_in(walks[i], tets.mesh_of_packed())) << name << ", ray " << i;
         for (const Mistake mistake : {Mistake::left_out, Mistake::twice, Mistake::exchanged, Mistake::appended,
-                                      Mistake::ends_early, Mistake::begins_late})
+                                      Mistake::ends_early, Mistake::begins_late, Mistake::leaves_by_its_entry})
             for (std::size_t k = 0; k < walks[i].tets.size(); ++k) {
                 const auto wrong = falsified(scene, tets, walks[i], mistake, k);
                 if (!wrong) continue;
