@@ -116,7 +116,7 @@ KERNEL_FN Vec3 weights_outside(Sheared p0, Sheared p1, Sheared p2, bool is_insid
     return VEC3(is_inside0 ? one : zero, is_inside1 ? one : zero, is_inside2 ? one : zero);
 }
 
-KERNEL_FN bool is_on_side(real side, real area)
+KERNEL_FN bool sees_corner(real side, real area)
 {
     return area > real(0.0f) ? side >= real(0.0f) : side <= real(0.0f);
 }
@@ -136,9 +136,9 @@ KERNEL_FN Vec3 corner_weights(Sheared p0, Sheared p1, Sheared p2)
     Vec3 edge_on = weights_edge_on(h);
     real area = sum_of(areas);
     bool is_edge_on = sum_of(sides) <= least || area == real(0.0f);
-    bool is_inside0 = is_on_side(areas.x, area);
-    bool is_inside1 = is_on_side(areas.y, area);
-    bool is_inside2 = is_on_side(areas.z, area);
+    bool is_inside0 = sees_corner(areas.x, area);
+    bool is_inside1 = sees_corner(areas.y, area);
+    bool is_inside2 = sees_corner(areas.z, area);
     if (!is_edge_on && !(is_inside0 && is_inside1 && is_inside2))
         return weights_outside(p0, p1, p2, is_inside0, is_inside1, is_inside2);
     return VEC3(is_edge_on ? edge_on.x : sides.x, is_edge_on ? edge_on.y : sides.y, is_edge_on ? edge_on.z : sides.z);
