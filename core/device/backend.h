@@ -200,9 +200,10 @@ struct Yardstick {
 class Session {
 public:
     virtual ~Session() = default;
-    /// Tasks rays, search and segments: gives the device the rays of the following launches, in place of earlier rays. Call it
-    /// before the first launch. quads: GIVEN_RAY_QUADS or RAY_QUADS a ray (kernels/layouts/layout.h), for a multiple of
-    /// TILE_WIDTH rays. Throws Error{unsupported} with both numbers where the rays exceed the largest buffer.
+    /// Tasks rays, search and segments: gives the device the rays of the following launches, in place of earlier rays.
+    /// Call it before the first launch. quads: GIVEN_RAY_QUADS or RAY_QUADS a ray (kernels/layouts/layout.h), for a
+    /// multiple of TILE_WIDTH rays. Throws Error{unsupported} with both numbers where the rays exceed the largest
+    /// buffer.
     virtual void set_rays(std::span<const Quad> quads);
     /// Fills the whole output with POISON, untimed, then starts the kernel for every job. The jobs are in flight
     /// together: none waits for another's end. Uses several launches if one would run long enough for a watchdog to
