@@ -157,7 +157,7 @@ void CudaSession::launch_tiles(const LaunchPiece& piece, StreamHandle stream)
 {
     LaunchParams launch = piece.params;
     Address output = output_of(piece.job), rays = rays_.address();
-    void* parameters[] = {scene_.data(), &launch, &output, &rays}; // the last one is of tasks rays and search
+    void* parameters[] = {scene_.data(), &launch, &output, &rays}; // the last one is of tasks with given rays
     const unsigned threads = TILE_WIDTH * tile_height_;
     device_.launch(entries_[piece.job].function, piece.tiles, threads, parameters, stack_bytes_ * threads, stream);
 }

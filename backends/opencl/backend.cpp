@@ -27,7 +27,8 @@ std::vector<KernelFile> files_of(const KernelId& kernel)
         "clBuildProgram gets '" +
         options + "', and also: ";
     if (kernel.structure == Structure::cdt) what += "-DSTARTS_OUTSIDE for rays from outside; ";
-    what += "-DRAYS for given rays; -DSEARCH for single exit searches; -DPERSISTENT for that schedule; "
+    what += "-DRAYS for given rays; -DSEARCH for single exit searches; -DSEGMENTS for all tets of given rays; "
+            "-DPERSISTENT for that schedule; "
             "-cl-denorms-are-zero on processors; -cl-fp32-correctly-rounded-divide-sqrt where the device offers it";
     return {{name + ".cl", what,
              "clang -x cl -Xclang -finclude-default-header -fsyntax-only " + options + " " + name + ".cl",

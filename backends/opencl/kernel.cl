@@ -1,7 +1,7 @@
 // A kernel as an OpenCL program (CMakeLists.txt): a thin entry around the shared text. Build options (session.cpp):
 // GROUP_ITEMS, the items of a work group, which traces one tile at a time; PERSISTENT for that schedule; RAYS, SEARCH
-// and SEGMENTS for those tasks; STARTS_OUTSIDE if no ray of an image begins in a tet; MATH_FAST; TETS_IN_PARTS; STACK_TOP,
-// where stacks begin in local memory.
+// and SEGMENTS for those tasks; STARTS_OUTSIDE if no ray of an image begins in a tet; MATH_FAST; TETS_IN_PARTS;
+// STACK_TOP, where stacks begin in local memory.
 #include "kernels/language/dialect_opencl.h"
 
 #include "kernels/language/vector.h"

@@ -60,9 +60,10 @@ std::string what_of(const std::string& variant)
     if (variant == "miss" || variant == "hit")
         return "SPIR-V of what a ray-tracing pipeline runs for a " + variant + ", as the driver gets it";
     std::string text = "SPIR-V of ";
-    text += variant.starts_with("rays")     ? "given rays"
-            : variant.starts_with("search") ? "exit searches"
-                                            : "primary rays";
+    text += variant.starts_with("rays")       ? "given rays"
+            : variant.starts_with("search")   ? "exit searches"
+            : variant.starts_with("segments") ? "all tets of given rays"
+                                              : "primary rays";
     if (variant.ends_with("_parts")) text += ", with the tets in several buffers";
     if (variant.ends_with("_texels")) text += ", with the scene read as texels, as on emulated devices";
     if (variant.ends_with("_leaves_texels")) text += "; leaves rays at ties to another program";

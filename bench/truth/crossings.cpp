@@ -3,12 +3,12 @@
 #include "bench/truth/judge.h"
 #include "bench/truth/tube.h"
 #include "core/base/exact.h"
-#include "core/device/given_quads.h"
 
 #include <omp.h>
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -108,6 +108,12 @@ std::optional<Stretch> depths_within(const Corners& corners, double radius)
     return Stretch{low, high};
 }
 
+/// The sides of a tet by which a ray may enter or leave the domain at a place.
+struct Ways {
+    unsigned sides = 0;         ///< a bit each
+    const char* flaw = nullptr; ///< of the last other one
+};
+
 /// One ray among the tets.
 class CrossedRay {
 public:
@@ -119,7 +125,7 @@ public:
         const std::array<double, 3> along = {direction.x, direction.y, direction.z};
         const auto axis = static_cast<std::size_t>(
             std::ranges::max_element(along, {}, [](double a) { return std::abs(a); }) - along.begin());
-        const double stretch = stretch_of(ray.direction) * 0x1p-31;
+        const double stretch = length(direction) / std::abs(along[axis]);
         const double origin = std::copysign(1.0, along[axis]) * ray.origin[static_cast<int>(axis)];
         place_of_origin_ = (2 + origin) * stretch;
     }
@@ -142,8 +148,10 @@ private:
     [[nodiscard]] std::array<Clearance, 4> planes_of(std::uint32_t number) const;
     [[nodiscard]] std::array<Clearance, 6> planes_of_domain() const;
     [[nodiscard]] double depth_of(std::uint32_t place) const { return length_of(place) - place_of_origin_; }
-    [[nodiscard]] bool passes(std::uint32_t number, std::size_t side, std::uint32_t place);
-    [[nodiscard]] bool passes_any(std::uint32_t number, std::uint32_t neighbour, std::uint32_t place);
+    [[nodiscard]] const char* flaw_of_face(std::uint32_t number, std::size_t side, std::uint32_t place);
+    [[nodiscard]] const char* flaw_of_step(std::uint32_t number, std::uint32_t next, std::uint32_t place);
+    [[nodiscard]] Ways boundary_of(std::uint32_t number, std::uint32_t place, double sense);
+    [[nodiscard]] const char* flaw_of_ends(const CrossedTets& walk);
     [[nodiscard]] const char* flaw_of_chain(const CrossedTets& walk);
     [[nodiscard]] const char* flaw_of_gaps();
     [[nodiscard]] bool leaves_out(Stretch gap) const;
@@ -165,8 +173,7 @@ std::array<Clearance, 4> CrossedRay::planes_of(std::uint32_t number) const
     std::array<Clearance, 4> planes{};
     for (std::size_t side = 0; side < 4; ++side) {
         const auto [a, b, c] = face(number, side);
-        Double3 normal = normalized(cross(b - a, c - a));
-        if (dot(normal, seen(tet(number).vertices.at(side)) - a) < 0) normal = normal * -1;
+        const Double3 normal = normalized(cross(b - a, c - a)); // to the inside, by the order of the corners
         planes.at(side) = {-dot(normal, a), normal.z};
     }
     return planes;
@@ -187,32 +194,64 @@ std::array<Clearance, 6> CrossedRay::planes_of_domain() const
     return planes;
 }
 
-/// Whether the ray passes a face within the bound, and the place is that of a point of the face there.
-bool CrossedRay::passes(std::uint32_t number, std::size_t side, std::uint32_t place)
+/// The ray must pass a face within the bound, and the place must be that of a point of the face near there.
+const char* CrossedRay::flaw_of_face(std::uint32_t number, std::size_t side, std::uint32_t place)
 {
     const Corners corners = face(number, side);
     const double distance = distance_across(corners);
-    if (distance > bound_) return false;
-    const auto depths = depths_within(corners, 2 * bound_);
-    if (!depths) return false;
+    if (distance > bound_) return "the ray passes one of its faces farther away than rounding explains";
+    const auto depths = depths_within(corners, 2 * (bound_ + distance));
     const auto [low, high] = std::minmax({corners[0].z, corners[1].z, corners[2].z});
     const double slack = 2 * bound_ + 12 * 0x1p-24 * (high - low);
     const double depth = depth_of(place);
-    if (depth < depths->begin - slack || depth > depths->end + slack) return false;
-    if (depths->end < -slack) return false; // all of it is behind the origin
+    if (!depths || depth < depths->begin - slack || depth > depths->end + slack)
+        return "a place is not where the ray meets that face";
+    if (depths->end < -slack) return "one of its faces is behind the ray's origin";
     distance_ = std::max(distance_, distance);
-    return true;
+    return nullptr;
 }
 
-/// Of the faces to that neighbour, or, for NO_TET, of those of the domain's boundary.
-bool CrossedRay::passes_any(std::uint32_t number, std::uint32_t neighbour, std::uint32_t place)
+const char* CrossedRay::flaw_of_step(std::uint32_t number, std::uint32_t next, std::uint32_t place)
 {
+    const char* flaw = "one of its tets is no neighbour of the tet before";
     for (std::size_t side = 0; side < 4; ++side) {
         const std::uint32_t across = tet(number).neighbours.at(side);
-        const std::uint32_t found = across == NO_HALF_FACE ? NO_TET : half_face_tet(across);
-        if (found == neighbour && passes(number, side, place)) return true;
+        if (across == NO_HALF_FACE || half_face_tet(across) != next) continue;
+        flaw = flaw_of_face(number, side, place);
+        if (flaw == nullptr) break;
     }
-    return false;
+    return flaw;
+}
+
+/// sense: 1 to enter the domain, -1 to leave it. Where the ray is far deeper in the tet than the bound, it cannot do so
+/// against a face's sense.
+Ways CrossedRay::boundary_of(std::uint32_t number, std::uint32_t place, double sense)
+{
+    const auto planes = planes_of(number);
+    const Stretch part = inside_of(planes, 0);
+    const bool is_deep = part.begin < part.end && deepest_in(planes, part) > 4 * bound_;
+    Ways ways{0, "it does not begin and end at the domain's boundary, in the ray's sense"};
+    for (std::size_t side = 0; side < 4; ++side) {
+        if (tet(number).neighbours.at(side) != NO_HALF_FACE) continue;
+        if (is_deep && planes.at(side).slope * sense < 0) continue;
+        if (const char* const flaw = flaw_of_face(number, side, place))
+            ways.flaw = flaw;
+        else
+            ways.sides |= 1u << side;
+    }
+    return ways;
+}
+
+const char* CrossedRay::flaw_of_ends(const CrossedTets& walk)
+{
+    const Ways last = boundary_of(chain_.back(), walk.places.back(), -1);
+    if (last.sides == 0) return last.flaw;
+    if (!from_outside_)
+        return std::abs(depth_of(walk.places.front())) <= 0x1p-26 ? nullptr : "it does not begin at the ray's origin";
+    const Ways first = boundary_of(chain_.front(), walk.places.front(), 1);
+    if (first.sides == 0) return first.flaw;
+    const bool is_one_side = first.sides == last.sides && std::has_single_bit(first.sides);
+    return chain_.size() == 1 && is_one_side ? "it leaves its only tet by the face by which it enters" : nullptr;
 }
 
 const char* CrossedRay::flaw_of_chain(const CrossedTets& walk)
@@ -223,15 +262,9 @@ const char* CrossedRay::flaw_of_chain(const CrossedTets& walk)
         chain_.push_back(mesh_of_packed_[tet]);
     }
     if (std::set(chain_.begin(), chain_.end()).size() != chain_.size()) return "it crosses a tet twice";
-    const bool begins = from_outside_ ? passes_any(chain_.front(), NO_TET, walk.places.front())
-                                      : std::abs(depth_of(walk.places.front())) <= 0x1p-26;
-    if (!begins) return "it does not begin where the ray enters the domain, or at its origin";
     for (std::size_t i = 1; i < chain_.size(); ++i)
-        if (!passes_any(chain_[i - 1], chain_[i], walk.places[i]))
-            return "it does not pass, within rounding of the ray, through a face from a tet to the next";
-    if (!passes_any(chain_.back(), NO_TET, walk.places.back()))
-        return "it does not end where the ray leaves the domain";
-    return nullptr;
+        if (const char* const flaw = flaw_of_step(chain_[i - 1], chain_[i], walk.places[i])) return flaw;
+    return flaw_of_ends(walk);
 }
 
 /// Whether a tet that is not in the chain has the ray, in a part of it, deeper inside than the bound. Goes from tet to

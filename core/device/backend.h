@@ -161,7 +161,7 @@ struct TraceJob {
 /// tet: of the scene that was packed, as its mesh numbers them; NO_TET: rays enter from outside.
 void start_in(TraceJob& job, const PackedScene& packed, const Scene& scene, std::uint32_t tet);
 
-/// The job that traces all rays given to a session of task rays: a column of tiles.
+/// The job that traces all rays given to a session of task rays or segments: a column of tiles.
 /// rays: their number, a multiple of TILE_WIDTH.
 [[nodiscard]] TraceJob given_job(std::size_t rays, std::uint32_t max_steps, bool any_hit);
 
@@ -200,9 +200,10 @@ struct Yardstick {
 class Session {
 public:
     virtual ~Session() = default;
-    /// Tasks rays and search: gives the device the rays of the following launches, in place of earlier rays. Call it
-    /// before the first launch. quads: GIVEN_RAY_QUADS or RAY_QUADS a ray (kernels/layouts/layout.h), for a multiple of
-    /// TILE_WIDTH rays. Throws Error{unsupported} with both numbers where the rays exceed the largest buffer.
+    /// Tasks rays, search and segments: gives the device the rays of the following launches, in place of earlier rays.
+    /// Call it before the first launch. quads: GIVEN_RAY_QUADS or RAY_QUADS a ray (kernels/layouts/layout.h), for a
+    /// multiple of TILE_WIDTH rays. Throws Error{unsupported} with both numbers where the rays exceed the largest
+    /// buffer.
     virtual void set_rays(std::span<const Quad> quads);
     /// Fills the whole output with POISON, untimed, then starts the kernel for every job. The jobs are in flight
     /// together: none waits for another's end. Uses several launches if one would run long enough for a watchdog to

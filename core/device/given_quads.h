@@ -18,7 +18,7 @@ namespace tetrace {
 /// 2^STRETCH_BITS times a direction's length over the magnitude of its largest component, rounded to nearest.
 [[nodiscard]] std::uint32_t stretch_of(Float3 direction);
 
-/// The same for a BVH: origins are offset, without half-faces.
+/// As given_quads(), but for a BVH: origins are offset, without half-faces.
 [[nodiscard]] std::vector<Quad> given_quads_offset(const RaySet& set, const TriangleMesh& mesh);
 
 } // namespace tetrace

@@ -47,21 +47,86 @@ KERNEL_FN real above_zero(real a)
 }
 
 // The weights of a face's corners, of a face that the ray sees edge-on, or nearly so: along the axis of the plane along
-// which it is longest.
+// which it is longest. With all corners on one side of the ray: the nearest.
 KERNEL_FN Vec3 weights_edge_on(Vec3 h)
 {
     PRECISE real above = above_zero(h.x) + above_zero(h.y) + above_zero(h.z);
     PRECISE real below = above_zero(-h.x) + above_zero(-h.y) + above_zero(-h.z);
     Vec3 weights =
         VEC3(weight_on_line(h.x, above, below), weight_on_line(h.y, above, below), weight_on_line(h.z, above, below));
+    Vec3 away = magnitudes(h);
+    real least = minimum(minimum(away.x, away.y), away.z);
+    real zero = real(0.0f);
     real one = real(1.0f);
-    return sum_of(weights) > real(0.0f) ? weights : VEC3(one, one, one);
+    bool has_weight = sum_of(weights) > zero;
+    return VEC3(has_weight        ? weights.x
+                : away.x <= least ? one
+                                  : zero,
+                has_weight        ? weights.y
+                : away.y <= least ? one
+                                  : zero,
+                has_weight        ? weights.z
+                : away.z <= least ? one
+                                  : zero);
 }
 
-// How much each corner of a face counts for the point at which the ray meets it: not negative, and with a positive sum.
+// The weight of p for the point of the edge from p to q that is nearest to the ray.
+KERNEL_FN real weight_on_edge(Sheared p, Sheared q)
+{
+    PRECISE real x = q.x - p.x;
+    PRECISE real y = q.y - p.y;
+    PRECISE real weight = q.x * x + q.y * y;
+    return above_zero(weight);
+}
+
+// Whether the face's point nearest to the ray is on the edge from corner 0 to 1: the ray is outside that edge alone, or
+// behind one of the two corners, from where the edge rises towards it. is_inside: the ray is on the corner's side of
+// the edge across from it. w01: the weight of corner 0 on that edge.
+KERNEL_FN bool is_nearest_edge(bool is_inside0, bool is_inside1, bool is_inside2, real w01, real w10)
+{
+    bool rises = is_inside0 ? w10 > real(0.0f) : w01 > real(0.0f);
+    return !is_inside2 && ((is_inside0 && is_inside1) || ((is_inside0 || is_inside1) && rises));
+}
+
+KERNEL_FN real weight_on_edges(bool on_first, real first, bool on_second, real second)
+{
+    real zero = real(0.0f);
+    PRECISE real weight = (on_first ? first : zero) + (on_second ? second : zero);
+    return weight;
+}
+
+// The weights for the point of a face that is nearest to a ray that passes outside: on an edge, or else the corner that
+// the ray is behind.
+KERNEL_FN Vec3 weights_outside(Sheared p0, Sheared p1, Sheared p2, bool is_inside0, bool is_inside1, bool is_inside2)
+{
+    real w01 = weight_on_edge(p0, p1);
+    real w02 = weight_on_edge(p0, p2);
+    real w10 = weight_on_edge(p1, p0);
+    real w12 = weight_on_edge(p1, p2);
+    real w20 = weight_on_edge(p2, p0);
+    real w21 = weight_on_edge(p2, p1);
+    bool on01 = is_nearest_edge(is_inside0, is_inside1, is_inside2, w01, w10);
+    bool on12 = is_nearest_edge(is_inside1, is_inside2, is_inside0, w12, w21);
+    bool on20 = is_nearest_edge(is_inside2, is_inside0, is_inside1, w20, w02);
+    if (on01 || on12 || on20)
+        return VEC3(weight_on_edges(on01, w01, on20, w02), weight_on_edges(on12, w12, on01, w10),
+                    weight_on_edges(on20, w20, on12, w21));
+    real zero = real(0.0f);
+    real one = real(1.0f);
+    return VEC3(is_inside0 ? one : zero, is_inside1 ? one : zero, is_inside2 ? one : zero);
+}
+
+KERNEL_FN bool sees_corner(real side, real area)
+{
+    return area > real(0.0f) ? side >= real(0.0f) : side <= real(0.0f);
+}
+
+// How much each corner of a face counts for the point at which the ray meets it, or which is nearest to the ray: not
+// negative, and with a positive sum.
 KERNEL_FN Vec3 corner_weights(Sheared p0, Sheared p1, Sheared p2)
 {
-    Vec3 sides = magnitudes(VEC3(fine_side(p1, p2), fine_side(p2, p0), fine_side(p0, p1)));
+    Vec3 areas = VEC3(fine_side(p1, p2), fine_side(p2, p0), fine_side(p0, p1));
+    Vec3 sides = magnitudes(areas);
     Vec3 x = VEC3(p0.x, p1.x, p2.x);
     Vec3 y = VEC3(p0.y, p1.y, p2.y);
     bool is_high = largest_of(y) > largest_of(x);
@@ -69,7 +134,13 @@ KERNEL_FN Vec3 corner_weights(Sheared p0, Sheared p1, Sheared p2)
     real size = largest_of(h);
     PRECISE real least = size * size * FLAT_SHARE;
     Vec3 edge_on = weights_edge_on(h);
-    bool is_edge_on = sum_of(sides) <= least;
+    real area = sum_of(areas);
+    bool is_edge_on = sum_of(sides) <= least || area == real(0.0f);
+    bool is_inside0 = sees_corner(areas.x, area);
+    bool is_inside1 = sees_corner(areas.y, area);
+    bool is_inside2 = sees_corner(areas.z, area);
+    if (!is_edge_on && !(is_inside0 && is_inside1 && is_inside2))
+        return weights_outside(p0, p1, p2, is_inside0, is_inside1, is_inside2);
     return VEC3(is_edge_on ? edge_on.x : sides.x, is_edge_on ? edge_on.y : sides.y, is_edge_on ? edge_on.z : sides.z);
 }
 

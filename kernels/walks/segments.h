@@ -125,17 +125,11 @@ KERNEL_FN Exit exit_from_face(SceneView scene, Ray ray, uint half_face)
     exit.face = exit_face(scene, exit.tet, half_face & 3u, ray);
     return exit;
 }
-
-// Other walks than those along paths have no way to begin anew.
-KERNEL_FN uint exit_ahead(MAYBE_UNUSED SceneView scene, MAYBE_UNUSED TraceParams params, MAYBE_UNUSED Ray ray,
-                          MAYBE_UNUSED uint start, uint doubted)
-{
-    return doubted;
-}
 #endif
 
 // direction, origin: the ray's quads. Walks from inside begin anew as those to a hit do (docs/spec/project.md, P6 and
-// P8).
+// P8). Other walks than those along paths cannot begin anew: they are lost where they are found in a circle
+// (walk_by_neighbours.h).
 KERNEL_FN Segments cross_tets(SceneView scene, TraceParams params, uint4 direction, uint4 origin)
 {
     Ray ray = given_ray(direction, origin);
@@ -156,9 +150,14 @@ KERNEL_FN Segments cross_tets(SceneView scene, TraceParams params, uint4 directi
     }
     if (exit.tet == NO_TET) return no_segments();
 
+#ifdef WALKS_PATHS
     bool may_begin_anew = !from_outside;
     uint own = exit.face == NO_EXIT ? NO_HALF_FACE : (exit.tet << 2u) | exit.face;
     uint pause = from_outside ? params.max_steps : first_pause(params);
+#else
+    uint pause = first_pause(params);
+    uint saved = NO_HALF_FACE;
+#endif
     uint half_face = NO_HALF_FACE;
     Crossing at = begin_crossing(exit.tet, exit.face, begin);
     for (;;) {
@@ -170,6 +169,7 @@ KERNEL_FN Segments cross_tets(SceneView scene, TraceParams params, uint4 directi
                 at = entering_tet(scene, ray, half_face, at);
             }
         }
+#ifdef WALKS_PATHS
         bool is_paused = half_face != NO_HALF_FACE;
         if (!may_begin_anew || (own != NO_HALF_FACE && !is_paused)) break;
         may_begin_anew = false;
@@ -183,6 +183,13 @@ KERNEL_FN Segments cross_tets(SceneView scene, TraceParams params, uint4 directi
             at = begin_crossing(ahead >> 2u, ahead & 3u, begin);
             if (ahead == NO_HALF_FACE) break;
         }
+#else
+        uint steps = at.sum.crossings;
+        if (half_face == NO_HALF_FACE || half_face == saved || steps >= params.max_steps) break;
+        pause = steps + 1u;
+        saved = (steps & (steps - 1u)) == 0u ? half_face : saved;
+        at = entering_tet(scene, ray, half_face, at);
+#endif
     }
     if (at.sum.crossings == 0u) return no_segments();
     at.sum.total = at.farthest - at.begin;

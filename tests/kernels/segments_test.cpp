@@ -33,24 +33,38 @@ struct CrossedRays {
     std::uint64_t reversed = 0, crossings = 0;
 };
 
-/// Of project's walks, which all layouts must share.
-CrossedRays crossed_by_project(const Scene& scene, std::uint64_t count)
+/// Hard rays; for maria the chords alone, in general position: others lead it astray in circles and past faces.
+RaySet rays_for(Method method, const Scene& scene, std::uint64_t first, std::size_t count)
 {
-    const CrossedScene tets(scene, Method::project, Layout::tet80);
+    RaySet set = hard_ray_set(scene, first, count);
+    if (method == Method::project) return set;
+    const HardRays rays(scene);
+    for (std::size_t i = 0; i < count; ++i) {
+        set.rays[i] = rays.ray((first + i) * hard_kinds);
+        set.rays[i].pixel = static_cast<std::uint32_t>(i);
+    }
+    return set;
+}
+
+/// Of a method's walks on tet80, which its other layouts must share.
+CrossedRays crossed_by(Method method, const std::vector<Layout>& others, const Scene& scene, std::uint64_t count)
+{
+    const CrossedScene tets(scene, method, Layout::tet80);
     CrossedRays all;
     for (std::uint64_t first = 0; first < count; first += crossed_at_once) {
         const std::size_t size = std::min<std::uint64_t>(crossed_at_once, count - first) / TILE_WIDTH * TILE_WIDTH;
-        const RaySet set = hard_ray_set(scene, first, size);
+        const RaySet set = rays_for(method, scene, first, size);
         const std::vector<Hit> answers = tets.answers(set);
-        for (const Layout layout : {Layout::tet96, Layout::half32, Layout::tet64})
-            for (std::size_t i = 0; const Hit& answer : CrossedScene(scene, Method::project, layout).answers(set))
-                EXPECT_EQ(segments_of(answer), segments_of(answers[i++])) << name_of(layout) << " ray " << first + i;
+        for (const Layout layout : others)
+            for (std::size_t i = 0; const Hit& answer : CrossedScene(scene, method, layout).answers(set)) {
+                EXPECT_EQ(segments_of(answer), segments_of(answers[i])) << name_of(layout) << " ray " << first + i;
+                ++i;
+            }
         const Verdicts verdicts = tets.judged(set, answers, tets.walks(set));
         all.verdicts.add(verdicts);
         if (!verdicts.flawed.empty()) {
             const Segments flawed = segments_of(verdicts.first_wrong->ours);
-            ADD_FAILURE() << "ray " << first + verdicts.flawed.front() << ", of kind "
-                          << (first + verdicts.flawed.front()) % hard_kinds << ", " << flawed.crossings
+            ADD_FAILURE() << "ray " << first + verdicts.flawed.front() << ", " << flawed.crossings
                           << " crossings: " << verdicts.first_wrong->reason;
         }
         for (const Hit& answer : answers) {
@@ -61,9 +75,11 @@ CrossedRays crossed_by_project(const Scene& scene, std::uint64_t count)
     return all;
 }
 
-void expect_all_right(const Scene& scene, const std::string& name)
+void expect_all_right(Method method, const std::vector<Layout>& others, const Scene& scene,
+                      const std::string& scene_name)
 {
-    const auto [verdicts, reversed, crossings] = crossed_by_project(scene, crossed_rays());
+    const auto [verdicts, reversed, crossings] = crossed_by(method, others, scene, crossed_rays());
+    const std::string name = fmt::format("{}, {}", scene_name, name_of(method));
     fmt::print("{}: {} rays, {} crossings: {} agree, {} ties, {} wrong, {} lost; {} reversed\n", name, verdicts.rays,
                crossings, verdicts.agreed, verdicts.ties, verdicts.wrong, verdicts.lost, reversed);
     EXPECT_EQ(verdicts.wrong + verdicts.lost, 0u) << name;
@@ -104,7 +120,32 @@ std::array<Float3, 3> corners_near(const GivenRay& ray, Random& random, bool is_
 TEST(Segments, of_hard_rays_are_neither_lost_nor_wrong)
 {
     for (const auto& [name, scene] : make_hard_scenes())
-        expect_all_right(scene, name);
+        expect_all_right(Method::project, {Layout::tet96, Layout::half32, Layout::tet64}, scene, name);
+}
+
+TEST(Segments, of_chords_are_neither_lost_nor_wrong_by_maria)
+{
+    for (const auto& [name, scene] : make_hard_scenes())
+        expect_all_right(Method::maria, {Layout::tet96}, scene, name);
+}
+
+TEST(Segments, a_circle_is_found_long_before_the_cap)
+{
+    const Scene scene = make_cubes(2);
+    PackedScene packed = pack(scene, Layout::tet96, TetOrder::chains);
+    for (std::size_t quad = 0; quad < packed.tets.size(); ++quad) // every face leads to face 0 of tet 1
+        if (quad % TET96_QUADS >= 4) packed.tets[quad].x = packed.tets[quad].z = 1u << 2u;
+    kernel::TraceParams params{};
+    params.max_steps = 0xFFFFFFFF; // steps that would take minutes
+    const RaySet set = hard_ray_set(scene, 0, 360);
+    const auto quads = segment_quads(set, packed);
+    std::size_t lost = 0;
+    for (std::size_t i = 0; i < set.rays.size(); ++i) {
+        const auto answer = kernel::cross_tets(kernel::view_of(packed), params, quads[i], quads[set.rays.size() + i]);
+        if (answer.first == LOST) ++lost;
+        EXPECT_TRUE(answer.first == LOST || answer.first == NO_HIT) << i;
+    }
+    EXPECT_GT(lost, 200u);
 }
 
 TEST(Segments, add_up_to_the_chord_of_the_domain)
@@ -198,4 +239,34 @@ TEST(Places, are_the_same_for_every_order_of_the_corners)
         ASSERT_LE(place, last + rounding) << i;
     }
     EXPECT_GT(on_lines, 100u);
+}
+
+// Thin triangles, and rays beside them: the place is where the foot on the long edge is, or at its end.
+TEST(Places, are_nearest_where_a_ray_passes_outside)
+{
+    Random random(47);
+    for (int i = 0; i < 20'000; ++i) {
+        const Float3 tilt = random.point(-0.5F, 0.5F);
+        const GivenRay ray{random.point(-0.3F, 0.3F), {tilt.x, tilt.y, 1}, NO_END, NO_HALF_FACE, FREE_FACE, 0};
+        const double angle = random.point(0, 7).x, foot = random.point(-0.3F, 1.3F).x, third = random.point(0, 1).x;
+        const double beside = std::ldexp(1.0, -12 - static_cast<int>(random.below(14)));
+        const double width =
+            std::ldexp(static_cast<double>(random.below(3)) - 1, -12 - static_cast<int>(random.below(14)));
+        const double first = random.point(0, 0.4F).x, rise = random.point(-0.2F, 0.2F).x;
+        const auto corner = [&](double share, double across) {
+            const double along = 0.5 * (share - foot), z = first + share * rise;
+            const Double3 o = to_double(ray.origin), u = to_double(ray.direction);
+            return Float3{static_cast<float>(o.x + z * u.x + along * std::cos(angle) - across * std::sin(angle)),
+                          static_cast<float>(o.y + z * u.y + along * std::sin(angle) + across * std::cos(angle)),
+                          static_cast<float>(o.z + z)};
+        };
+        const std::array<Float3, 3> corners{corner(0, beside), corner(1, beside), corner(third, beside + width)};
+        const double expected = 2 + ray.origin.z + first + std::clamp(foot, 0.0, 1.0) * rise;
+        const std::uint32_t place = place_of(ray, corners, orders[0]);
+        for (const Order& order : orders)
+            ASSERT_EQ(place_of(ray, corners, order), place) << i;
+        ASSERT_NEAR(length_of(place), expected * length(to_double(ray.direction)),
+                    4 * (beside + std::abs(width)) + 0x1p-18)
+            << i;
+    }
 }
