@@ -9,7 +9,8 @@ namespace tetrace {
 
 namespace {
 
-/// Rows without an answer that have the same reason. Of rows that --budget skips, all but the row's own time is.
+/// Rows without an answer that have the same reason. The reasons of rows that --budget skips differ only in the row's
+/// own time, and count as the same.
 struct Unanswered {
     const RowRecord* first;
     Status status;

@@ -74,7 +74,7 @@ std::string unless_usual(const std::string& value, std::string_view usual)
     return value.empty() || value == usual ? "" : " " + value;
 }
 
-/// Sets what tells of the row's kernel.
+/// Sets the members that describe the row's kernel.
 void read_kernel(ReportRow& row, const ResultValue& value)
 {
     read_into(row.structure, value.at("structure"));

@@ -24,8 +24,8 @@ using FaceSide = std::array<std::uint32_t, 3>;
 /// possible tets first.
 class CavityFill {
 public:
-    /// front: the cavity's sides, seen from inside. vertices: those that tets may have, the front's among them. The
-    /// search ends after so many tries, or when no tests are left; it takes those that it spends.
+    /// front: the cavity's sides, seen from inside. vertices: those that tets may have, the front's among them. tries:
+    /// after these the search gives up. tests: how many it may make, for all cavities together; it subtracts its own.
     CavityFill(std::span<const Float3> points, std::set<FaceSide> front, std::set<std::uint32_t> vertices, int tries,
                std::uint64_t& tests)
         : points_(points), front_(std::move(front)), vertices_(std::move(vertices)), tries_(tries), tests_(tests)
