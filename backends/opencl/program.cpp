@@ -4,6 +4,10 @@
 #include "core/base/hash.h"
 #include "kernels/layouts/layout.h"
 
+#include <algorithm>
+#include <cctype>
+#include <iterator>
+
 namespace tetrace::opencl {
 
 namespace {
@@ -41,9 +45,11 @@ std::string defines_of(const KernelId& kernel, unsigned tile_height, bool in_par
 {
     std::string defines = "-DGROUP_ITEMS=" + std::to_string(TILE_WIDTH * tile_height);
     if (kernel.schedule == Schedule::persistent) defines += " -DPERSISTENT";
-    if (kernel.task == Task::rays) defines += " -DRAYS";
-    if (kernel.task == Task::search) defines += " -DSEARCH";
-    if (kernel.task == Task::segments) defines += " -DSEGMENTS";
+    if (traits_of(kernel.task).takes_rays) {
+        defines += " -D"; // RAYS, SEARCH, SEGMENTS
+        std::ranges::transform(name_of(kernel.task), std::back_inserter(defines),
+                               [](char c) { return std::toupper(c); });
+    }
     if (in_parts) defines += " -DTETS_IN_PARTS";
     if (starts_outside) defines += " -DSTARTS_OUTSIDE";
     if (structure_of(kernel.layout) == Structure::bvh && stack_top > 0)

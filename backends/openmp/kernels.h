@@ -3,6 +3,8 @@
 #include "core/device/backend.h"
 #include "core/device/team.h"
 
+#include <array>
+
 namespace tetrace::openmp {
 
 /// Traces what this thread takes of a job's tiles. rays: the quads of given rays, empty for task trace. output: of the
@@ -10,25 +12,12 @@ namespace tetrace::openmp {
 using RunFunction = void(const PackedScene& scene, std::span<const Quad> rays, const TraceJob& job,
                          std::span<std::uint32_t> output, SharedTiles& shared, unsigned tile_height);
 
-/// One compiled kernel: a function per task, null for tasks that it does not have. CMake compiles kernel.cpp once for
-/// each kernel.
+/// One compiled kernel. CMake compiles kernel.cpp once for each kernel.
 struct CompiledKernel {
-    KernelId id; ///< of task trace and schedule tiles
-    RunFunction* trace;
-    RunFunction* rays;
-    RunFunction* search;
-    RunFunction* segments;
+    KernelId id;                                                 ///< of task trace and schedule tiles
+    std::array<RunFunction*, enum_names<Task>.size()> functions; ///< in the order of Task; null for tasks that it lacks
 
-    [[nodiscard]] RunFunction* function(Task task) const
-    {
-        switch (task) {
-        case Task::trace: return trace;
-        case Task::rays: return rays;
-        case Task::search: return search;
-        case Task::segments: return segments;
-        }
-        return nullptr;
-    }
+    [[nodiscard]] RunFunction* function(Task task) const { return functions[static_cast<std::size_t>(task)]; }
 };
 [[nodiscard]] const std::vector<CompiledKernel>& compiled_kernels();
 

@@ -216,7 +216,7 @@ const RaySet& rays_of(SceneWork& scene, const RowKey& key, std::size_t view)
 std::size_t number_of_ray(SceneWork& scene, const RowKey& key, std::size_t view, const ImagePixel& pixel)
 {
     const std::uint32_t number = pixel.y * scene.width() + pixel.x;
-    if (key.kernel.task == Task::trace) return number;
+    if (!traits_of(key.kernel.task).takes_rays) return number;
     const auto& rays = rays_of(scene, key, view).rays;
     const auto found = std::ranges::find(rays, number, &GivenRay::pixel);
     if (found == rays.end())
@@ -232,7 +232,7 @@ namespace {
 /// A single pixel, or as few rays as a session takes, all of them this one. The session has other rays afterwards.
 Hit trace_alone(RowRun& row, const TraceJob& image, std::size_t view, std::size_t number, const ImagePixel& pixel)
 {
-    if (row.key.kernel.task == Task::trace) {
+    if (!traits_of(row.key.kernel.task).takes_rays) {
         Hit hit{};
         static_cast<void>(row.session->trace(single_pixel(image, pixel.x, pixel.y), {&hit, 1}));
         return hit;
@@ -262,7 +262,7 @@ PixelRay ray_of(const View& view, const ImagePixel& pixel)
 
 PixelRay ray_of(SceneWork& scene, const RowKey& key, std::size_t view, const ImagePixel& pixel)
 {
-    if (key.kernel.task == Task::trace) return ray_of(scene.views()[view], pixel);
+    if (!traits_of(key.kernel.task).takes_rays) return ray_of(scene.views()[view], pixel);
     const GivenRay& ray = rays_of(scene, key, view).rays[number_of_ray(scene, key, view, pixel)];
     const bool is_offset = key.kernel.structure != Structure::cdt;
     return {is_offset ? offset_origin(ray, scene.loaded().scene.mesh) : ray.origin, ray.direction, ray};

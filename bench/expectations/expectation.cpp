@@ -106,8 +106,10 @@ namespace {
 /// The kernels that rows of a kind of rays may have.
 std::vector<KernelId> kernels_for(RayKind kind)
 {
-    std::vector<KernelId> kernels = kernels_of(kind == RayKind::primary ? Task::trace : Task::rays);
-    if (has_segments(kind)) std::ranges::copy(kernels_of(Task::segments), std::back_inserter(kernels));
+    std::vector<KernelId> kernels;
+    for (const Task task : values_of<Task>())
+        if (task == asked_task(task) && task != Task::search)
+            std::ranges::copy(kernels_for(task, kind), std::back_inserter(kernels));
     return kernels;
 }
 

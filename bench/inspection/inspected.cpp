@@ -72,11 +72,11 @@ void add_entries(std::vector<EntryPoint>& points, const KernelId& kernel)
 {
     points.push_back({kernel, Entry::outside});
     if (kernel.structure == Structure::cdt) points.push_back({kernel, Entry::inside});
-    for (const auto& [task, entry] : {std::pair{Task::rays, Entry::rays}, std::pair{Task::search, Entry::search},
-                                      std::pair{Task::segments, Entry::segments}}) {
+    for (const Task task : values_of<Task>()) {
         KernelId other = kernel;
         other.task = task;
-        if (has_task(other)) points.push_back({other, entry});
+        if (traits_of(task).takes_rays && has_task(other))
+            points.push_back({other, *value_named<Entry>(name_of(task))});
     }
 }
 

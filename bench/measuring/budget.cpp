@@ -43,7 +43,7 @@ TraceJob coarse_job(TraceJob job, unsigned step)
 TraceJob prepare_probe(RowRun& row, std::size_t view, unsigned step)
 {
     const TraceJob job = prepare_view(row, view);
-    if (row.key.kernel.task == Task::trace) return coarse_job(job, step);
+    if (!traits_of(row.key.kernel.task).takes_rays) return coarse_job(job, step);
     const std::size_t all = ray_count(row, view);
     const std::size_t rays = std::max<std::size_t>(all / (std::size_t{step} * step) / TILE_WIDTH, 1) * TILE_WIDTH;
     const auto& quads =

@@ -82,7 +82,7 @@ std::optional<Figures> figures_of(const RowRecord& row)
     if (totals.hits > 0) figures.mhits_per_s = 1e-6 * static_cast<double>(totals.hits) / seconds;
     if (totals.steps() == 0) return figures;
     figures.msteps_per_s = 1e-6 * static_cast<double>(totals.steps()) / seconds;
-    if (const double bytes = bytes_per_step(row.key.kernel); bytes > 0 && row.key.kernel.task != Task::segments)
+    if (const double bytes = bytes_per_step(row.key.kernel); bytes > 0 && !traits_of(row.key.kernel.task).crosses)
         figures.gb_per_s = 1e-3 * *figures.msteps_per_s * bytes;
     return figures;
 }

@@ -51,7 +51,7 @@ Path own_path(const RowRun& row, const DifferingRay& ray)
 std::string trace_command(const RowRun& row, std::uint32_t view, std::uint32_t x, std::uint32_t y)
 {
     if (row.scene == nullptr || row.scene->arguments().empty() || !is_portable(row.key.kernel)) return {};
-    if (row.key.kernel.task == Task::segments) return {};
+    if (!traits_of(row.key.kernel.task).finds_hits) return {};
     const KernelId& kernel = row.key.kernel;
     std::string text = fmt::format("tetrace trace {} --view {} --pixel {},{} --method {} --layout {}",
                                    row.scene->arguments(), view, x, y, name_of(kernel.method), name_of(kernel.layout));

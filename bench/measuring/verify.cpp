@@ -1,6 +1,7 @@
 #include "bench/measuring/verify.h"
 
 #include "backends/openmp/kernels.h"
+#include "bench/rows/answer_form.h"
 #include "bench/rows/ray_store.h"
 #include "bench/rows/row_tracing.h"
 #include "bench/truth/crossings.h"
@@ -117,7 +118,7 @@ public:
         image.hit_hash = hash_of(hits);
         if (reference_of(row.key)) compare(row, image, view);
         image.verdicts = judge(row, view, image.hit_hash);
-        if (row.key.kernel.task != Task::segments) name_source_triangles(image);
+        if (traits_of(row.key.kernel.task).finds_hits) name_source_triangles(image);
         return image;
     }
 
@@ -151,7 +152,7 @@ private:
 
     [[nodiscard]] RayTotals checked_totals(const RowRun& row, std::size_t view) const
     {
-        const RayTotals totals = row.key.kernel.task == Task::segments ? count_segments(hits) : count_rays(hits);
+        const RayTotals totals = answers_of(row.key.kernel.task).count(hits);
         if (totals.unwritten > 0) {
             const auto first = static_cast<std::size_t>(
                 std::ranges::find_if(hits, [](const Hit& hit) { return hit.face_id == POISON; }) - hits.begin());
@@ -288,7 +289,7 @@ std::span<const Hit> Verifier::reference() const
 
 Allowance allowance_of(const RowRun& row)
 {
-    if (row.key.kernel.task == Task::segments) return {}; // integers
+    if (!traits_of(row.key.kernel.task).finds_hits) return {}; // integers
     const std::uint32_t ulps = row.self_test ? row.self_test->allowed_ulps() : 0;
     const bool any_hit = row.key.rays == RayKind::shadow || row.key.rays == RayKind::ao;
     // Boxes are culled by quotients. Where these differ, another of several triangles may be found first.

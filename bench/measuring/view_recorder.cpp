@@ -54,7 +54,7 @@ std::vector<TraceJob> ViewRecorder::prepare(RowRun& row, std::size_t view)
 /// The first view: where a session has given rays, those of the current view would be lost.
 std::optional<TraceJob> ViewRecorder::pulse_job(RowRun& row)
 {
-    if (row.key.kernel.task != Task::trace) return std::nullopt;
+    if (traits_of(row.key.kernel.task).takes_rays) return std::nullopt;
     return job_of(row, 0);
 }
 
@@ -82,7 +82,7 @@ std::uint64_t ViewRecorder::repeat(RowRun& row, std::size_t view)
         throw Error(ErrorKind::unsupported,
                     fmt::format("no primary ray hits, so rays of kind {} cannot be made", name_of(row.key.rays)));
     const std::uint64_t hash = verifier_->trace(row, view);
-    if (row.key.kernel.task != Task::trace) row.ray_hash = hash_of_rays(row);
+    if (traits_of(row.key.kernel.task).takes_rays) row.ray_hash = hash_of_rays(row);
     return hash;
 }
 

@@ -65,8 +65,8 @@ enum class PaperBuild { ours, paper, rays };
 template <>
 inline constexpr auto enum_names<PaperBuild> = names_up_to<PaperBuild::rays>("ours", "paper", "rays");
 
-/// What rays an entry point of a kernel is for: primary ones from outside the domain, primary ones from inside, given
-/// ones, single exit searches, and given ones whose segments are wanted.
+/// What rays an entry point of a kernel is for: primary ones from outside the domain, primary ones from inside, and
+/// those of each task that is given rays, by its name.
 enum class Entry { outside, inside, rays, search, segments };
 template <>
 inline constexpr auto enum_names<Entry> = names_up_to<Entry::segments>("outside", "inside", "rays", "search",

@@ -7,10 +7,10 @@
 #include "bench/output/device_json.h"
 #include "bench/output/row_fields.h"
 #include "bench/output/score.h"
+#include "bench/rows/answer_form.h"
 #include "bench/rows/sized_scene.h"
 #include "bench/statistics/rank_interval.h"
 #include "bench/terminal/text.h"
-#include "core/rays/segments.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -81,7 +81,7 @@ std::string share_sentences(const std::string& scene, const std::vector<RowRecor
     for (const RowRecord* row : rows_of(scene, rows)) {
         const Traced* result = traced(*row);
         const RayShares shares = result != nullptr ? ray_shares(*result) : RayShares{};
-        if (row->key.kernel.task == Task::segments) continue;
+        if (!traits_of(row->key.kernel.task).finds_hits) continue;
         if (!shares.hit || !told.insert(row->key.rays).second) continue;
         const std::string kind = row->key.rays == RayKind::primary ? "" : fmt::format("{} ", name_of(row->key.rays));
         const std::string enter = shares.enter ? percent_text(*shares.enter) + " enter the domain, " : "";
@@ -90,22 +90,16 @@ std::string share_sentences(const std::string& scene, const std::vector<RowRecor
     return text;
 }
 
-/// What the rays of each kind cross in the scene; nearly the same for all its rows of task segments.
-std::string segments_sentences(const std::string& scene, const std::vector<RowRecord>& rows)
+/// What the rays of each kind cross in the scene; nearly the same for all its rows of a task that crosses the domain.
+std::string crossing_sentences(const std::string& scene, const std::vector<RowRecord>& rows)
 {
     std::string text;
-    std::set<RayKind> told;
+    std::set<std::pair<Task, RayKind>> told;
     for (const RowRecord* row : rows_of(scene, rows)) {
         const Traced* result = traced(*row);
-        if (row->key.kernel.task != Task::segments || result == nullptr || result->totals.hits == 0) continue;
-        if (!told.insert(row->key.rays).second) continue;
-        const RayTotals& totals = result->totals;
-        const auto rays = static_cast<double>(totals.hits);
-        text += fmt::format("{} rays that cross the domain: {:.2f} tets and a length of {:.4f} per ray; {} of {} faces "
-                            "out of order within rounding\n",
-                            name_of(row->key.rays), static_cast<double>(totals.hit_steps) / rays,
-                            length_of(totals.length_units) / rays, with_commas(totals.reversed),
-                            with_commas(totals.hit_steps));
+        if (result == nullptr) continue;
+        const std::string mean = answers_of(row->key.kernel.task).mean(name_of(row->key.rays), result->totals);
+        if (!mean.empty() && told.insert({row->key.kernel.task, row->key.rays}).second) text += mean;
     }
     return text;
 }
@@ -118,7 +112,7 @@ std::string steps_sentences(const std::string& scene, const std::vector<RowRecor
     for (const RowRecord* row : rows_of(scene, rows)) {
         const Traced* result = traced(*row);
         const MeanSteps mean = result != nullptr ? mean_steps(result->totals) : MeanSteps{};
-        if (row->key.kernel.task == Task::segments) continue;
+        if (!traits_of(row->key.kernel.task).finds_hits) continue;
         if (!mean.all || !told.insert(row->key.rays).second) continue;
         text += row->key.rays == RayKind::primary ? "" : fmt::format("{}: ", name_of(row->key.rays));
         text += fmt::format("{:.2f} steps per ray", *mean.all);
@@ -266,8 +260,8 @@ std::string verdict_sentence(const std::vector<RowRecord>& rows)
 {
     const Verdicts sum = all_verdicts(rows);
     if (sum.rays == 0) return "nothing.";
-    const auto are_segments = [](const RowRecord& row) { return row.key.kernel.task == Task::segments; };
-    const char* const how = std::ranges::any_of(rows, are_segments) ? "by the oracle" : "with exact arithmetic";
+    const auto finds_hits = [](const RowRecord& row) { return traits_of(row.key.kernel.task).finds_hits; };
+    const char* const how = std::ranges::all_of(rows, finds_hits) ? "with exact arithmetic" : "by the oracle";
     std::string text = fmt::format("{} rays, all {}: {} agree, {} ties", with_commas(sum.rays), how,
                                    with_commas(sum.agreed), with_commas(sum.ties));
     if (sum.ties > 0) text += fmt::format(" (by curves at most {:.1e} from their rays)", sum.max_tie_distance);
@@ -286,7 +280,7 @@ Sheet bench_sheet(const BenchResult& result)
         sheet.heading(scene_headline(value));
         sheet.line(share_sentences(name, result.rows));
         sheet.line(steps_sentences(name, result.rows));
-        sheet.line(segments_sentences(name, result.rows));
+        sheet.line(crossing_sentences(name, result.rows));
         sheet.prose(visits_sentences(name, result.rows));
         sheet.gap();
         if (const Table table = rate_table(name, result); !table.rows().empty()) {

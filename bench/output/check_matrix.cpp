@@ -1,10 +1,10 @@
 #include "bench/output/check_matrix.h"
 
 #include "bench/measuring/conformity.h"
+#include "bench/rows/answer_form.h"
 #include "bench/terminal/sheet.h"
 #include "bench/terminal/text.h"
 #include "core/base/hash.h"
-#include "core/rays/segments.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -180,29 +180,6 @@ using Path = std::vector<std::uint32_t>;
 
 constexpr std::size_t shown_tets = 200;
 
-std::string face_text(std::uint32_t face)
-{
-    if (face == NO_HIT) return "no hit";
-    if (face == LOST) return "lost";
-    return fmt::format("triangle {}", face);
-}
-
-std::string segments_text(const Segments& all)
-{
-    if (all.first == NO_HIT) return "no tet";
-    return fmt::format("{} crossings, {} to tet {}, hash {:08x}, length {:.9g}, {} reversed", all.crossings,
-                       all.first == LOST ? "lost" : fmt::format("tet {}", all.first), all.last, all.hash,
-                       length_of(all.length), all.reversed);
-}
-
-std::string hit_text(const Hit& hit, Task task)
-{
-    if (task == Task::segments) return segments_text(segments_of(hit));
-    const std::string tet = hit.tet == NO_TET ? "no tet" : fmt::format("tet {}", hit.tet);
-    return fmt::format("{}, t {:.9g}, u {:.9g}, v {:.9g}, {}, {} steps", face_text(hit.face_id), hit.t, hit.u, hit.v,
-                       tet, hit.steps);
-}
-
 std::string path_text(const char* title, const Path& path)
 {
     if (path.empty()) return {};
@@ -234,19 +211,20 @@ std::string different_text(const RowRecord& row, const DifferingRay& ray)
     const RayWalk& walk = traced(row)->walk_of_different;
     return fmt::format("{}: {} rays differ from openmp's, the first at view {}, pixel ({}, {})\n  this row: {}\n"
                        "  openmp:   {}\n{}{}{}{}\n",
-                       row_name(row.key), traced(row)->different, ray.view, ray.x, ray.y, hit_text(ray.ours, ray.task),
-                       hit_text(ray.openmp, ray.task), path_text("tets of this row", walk.own),
-                       path_text("tets of openmp", walk.openmp), parting_text(walk.own, walk.openmp),
-                       command_text(walk.command));
+                       row_name(row.key), traced(row)->different, ray.view, ray.x, ray.y,
+                       answers_of(ray.task).text(ray.ours), answers_of(ray.task).text(ray.openmp),
+                       path_text("tets of this row", walk.own), path_text("tets of openmp", walk.openmp),
+                       parting_text(walk.own, walk.openmp), command_text(walk.command));
 }
 
 std::string wrong_text(const RowRecord& row, const WrongRay& ray)
 {
-    const std::string exact = ray.task == Task::segments ? std::string()
-                                                         : fmt::format("  exact ray: {}, t {:.9g}\n",
-                                                                       face_text(ray.reference_face), ray.reference_t);
+    const std::string exact =
+        traits_of(ray.task).finds_hits
+            ? fmt::format("  exact ray: {}, t {:.9g}\n", face_text(ray.reference_face), ray.reference_t)
+            : std::string();
     return fmt::format("{}: first wrong ray: view {}, pixel ({}, {}): {}\n  this row:  {}\n{}{}{}\n", row_name(row.key),
-                       ray.view, ray.x, ray.y, ray.reason, hit_text(ray.ours, ray.task), exact,
+                       ray.view, ray.x, ray.y, ray.reason, answers_of(ray.task).text(ray.ours), exact,
                        path_text("tets of openmp", traced(row)->walk_of_wrong.openmp),
                        command_text(traced(row)->walk_of_wrong.command));
 }

@@ -56,7 +56,7 @@ DifferencePictures::DifferencePictures(std::filesystem::path folder)
 
 void DifferencePictures::see(const SeenImage& image)
 {
-    if (image.reference.empty() || image.row.key.kernel.task == Task::segments) return;
+    if (image.reference.empty() || !traits_of(image.row.key.kernel.task).finds_hits) return;
     const Allowance allowed = allowance_of(image.row);
     if (compare_hits(image.hits, image.reference, allowed).count == 0) return;
     const auto path = folder_ / (file_name(image) + ending_);

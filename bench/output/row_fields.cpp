@@ -250,7 +250,8 @@ std::vector<RowField> identity_fields()
         {"", "task",
          both(
              [](const RowRecord& row) {
-                 return row.key.kernel.task == Task::segments ? json(name_of(row.key.kernel.task)) : json();
+                 const Task task = asked_task(row.key.kernel.task);
+                 return task == Task::trace ? json() : json(name_of(task));
              },
              [](RowRecord& row, const ResultValue& value) { read_into(row.key.kernel.task, value); }),
          recorded(R"({ "enum": ["segments"] })", optional, "left out of rows that trace"), csv("task")},

@@ -43,7 +43,7 @@ bool has_scenes_of(const Workload& workload, const std::vector<nlohmann::json>& 
 /// Whether the row traced rays of the workload; rows that were not traced have none.
 bool has_rays_of(const Workload& workload, const RowRecord& row)
 {
-    if (row.key.kernel.task == Task::segments) return false;
+    if (!traits_of(row.key.kernel.task).finds_hits) return false;
     for (const Workload::Rays& rays : workload.rays)
         if (rays.kind == row.key.rays && row.key.ray_order == RayOrder::tiles) {
             if (!row.ray_hash || rays.hashes.empty()) return true;

@@ -29,7 +29,7 @@ std::vector<StructureContest> structure_contests(const std::vector<RowGroup>& gr
 {
     std::vector<StructureContest> contests;
     for (const RowGroup& group : groups) {
-        if (group.kind == DeviceKind::emulated || group.rays != RayKind::primary || group.are_segments) continue;
+        if (group.kind == DeviceKind::emulated || group.rays != RayKind::primary || group.task != Task::trace) continue;
         for (auto& contest : contests_of(group.rows, [&](const ReportRow&a, const ReportRow&b) {
                  return device_text(a, files) == device_text(b, files) && a.row->threads == b.row->threads;
              })) {

@@ -25,7 +25,7 @@ const char* const how_to_read_rates =
 
 std::string scene_title(const RowGroup& group)
 {
-    return rays_title(group.scene, rays_text(group.rays, group.are_segments));
+    return rays_title(group.scene, rays_text(group.rays, group.task));
 }
 
 /// "45 % of these rays enter the domain, and 16 % hit.", of groups that traced the same rays.

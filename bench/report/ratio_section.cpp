@@ -51,7 +51,7 @@ void add_ratio(std::vector<RatioGroup>& groups, const ReportInput& input, std::s
     if (!row.row->device_kind) name.reject("is of a row without a device");
     const ReportRow& reference = row_named(input, file, ratio.at("reference"));
     const bool noisy = is_noisy(row) || is_noisy(reference);
-    const RatioKey key{file, row.row->scene, rays_text(row.rays, row.are_segments), row.kind(), reference.api};
+    const RatioKey key{file, row.row->scene, rays_text(row.rays, row.task), row.kind(), reference.api};
     auto group = std::ranges::find_if(groups, [&](const RatioGroup& other) { return other.key == key; });
     if (group == groups.end()) group = groups.insert(groups.end(), {key, {}});
     group->intervals.push_back({row.name(), row.kernel() + "  " + row.api, noisy ? "noisy" : "",

@@ -92,15 +92,6 @@ void read_kernel(ReportRow& row, const ResultValue& value)
                            unless_usual(schedule, "tiles"), ray_order ? unless_usual(ray_order->line(), "tiles") : "");
 }
 
-/// The key is only in rows of segments.
-bool is_of_segments(const ResultValue& row)
-{
-    const auto value = row.find("task");
-    if (!value) return false;
-    if (value->line() != name_of(Task::segments)) value->reject("is not 'segments', the only task that rows name");
-    return true;
-}
-
 bool same_rays(const ResultScene& a, const ResultScene& b)
 {
     return a.name == b.name && a.hash == b.hash && a.camera_set == b.camera_set &&
@@ -110,10 +101,10 @@ bool same_rays(const ResultScene& a, const ResultScene& b)
 RowGroup& group_for(std::vector<RowGroup>& groups, const ResultScene& scene, const ReportRow& row)
 {
     for (RowGroup& group : groups)
-        if (same_rays(group.scene, scene) && group.rays == row.rays && group.are_segments == row.are_segments &&
+        if (same_rays(group.scene, scene) && group.rays == row.rays && group.task == row.task &&
             group.kind == row.kind())
             return group;
-    return groups.emplace_back(RowGroup{scene, row.rays, row.are_segments, row.kind(), {}});
+    return groups.emplace_back(RowGroup{scene, row.rays, row.task, row.kind(), {}});
 }
 
 /// Keeps groups of one scene together, in the order in which scenes appear.
@@ -123,9 +114,9 @@ void order_groups(std::vector<RowGroup>& groups)
     while (!groups.empty()) {
         const ResultScene scene = groups.front().scene;
         const RayKind rays = groups.front().rays;
-        const bool are_segments = groups.front().are_segments;
+        const Task task = groups.front().task;
         const auto others = std::stable_partition(groups.begin(), groups.end(), [&](const RowGroup& group) {
-            return same_rays(group.scene, scene) && group.rays == rays && group.are_segments == are_segments;
+            return same_rays(group.scene, scene) && group.rays == rays && group.task == task;
         });
         std::stable_sort(groups.begin(), others, [](const RowGroup& a, const RowGroup& b) { return a.kind < b.kind; });
         std::move(groups.begin(), others, std::back_inserter(ordered));
@@ -153,7 +144,7 @@ std::vector<ReportRow> report_rows(const ResultFile& result, std::size_t file)
             row.api += ", " + counted(threads, "thread", "threads");
         row.device = result.head.shown(result.rows[i].device);
         read_into(row.rays, items[i].at("rays"));
-        row.are_segments = is_of_segments(items[i]);
+        if (const auto task = items[i].find("task")) read_into(row.task, *task);
         read_shares(row, items[i]);
         row.rate = rate_of(items[i], result.rows[i].samples_s);
         if (row.rate && !row.row->device_kind) items[i].reject("has a rate and no device");
@@ -183,9 +174,9 @@ std::vector<RowGroup> rated_groups(const std::vector<ResultFile>& files, const s
     return groups;
 }
 
-std::string rays_text(RayKind rays, bool are_segments)
+std::string rays_text(RayKind rays, Task task)
 {
-    return std::string(are_segments ? "segments of " : "").append(name_of(rays));
+    return (task == Task::trace ? std::string() : fmt::format("{} of ", name_of(task))).append(name_of(rays));
 }
 
 std::string views_text(const ResultScene& scene)

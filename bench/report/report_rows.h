@@ -31,7 +31,7 @@ struct ReportRow {
     std::optional<KernelId> known_kernel;
     std::string api; ///< "vulkan", "vulkan:1", "openmp, 1 thread"
     RayKind rays = RayKind::primary;
-    bool are_segments = false;                    ///< of task segments
+    Task task = Task::trace;                      ///< as options call it
     std::string device;                           ///< the row's, but of the processor the machine's name
     std::optional<double> enter_share, hit_share; ///< of its rays: that enter the domain, and that hit
     std::optional<RowRate> rate;                  ///< only of rows with a device
@@ -51,7 +51,10 @@ struct ReportRow {
     }
 
 private:
-    [[nodiscard]] std::string subject() const { return are_segments ? "segments" : std::string(name_of(structure)); }
+    [[nodiscard]] std::string subject() const
+    {
+        return std::string(task == Task::trace ? name_of(structure) : name_of(task));
+    }
 };
 
 /// What Contest asks of a row. Precondition: the kernel is known.
@@ -64,11 +67,11 @@ private:
     return row.rate ? std::optional(row.rate->mrays_per_s) : std::nullopt;
 }
 
-/// Rows of any file that trace the same rays, or find their segments, in the same scene on devices of one kind.
+/// Rows of any file that do the same task for the same rays in the same scene on devices of one kind.
 struct RowGroup {
     ResultScene scene;
     RayKind rays = RayKind::primary;
-    bool are_segments = false; ///< of task segments
+    Task task = Task::trace;
     DeviceKind kind = DeviceKind::cpu;
     std::vector<const ReportRow*> rows; ///< those with a rate, fastest first
 };
@@ -82,7 +85,7 @@ struct RowGroup {
                                                  const std::vector<ReportRow>& rows);
 
 /// "random", "segments of random".
-[[nodiscard]] std::string rays_text(RayKind rays, bool are_segments);
+[[nodiscard]] std::string rays_text(RayKind rays, Task task);
 /// "4 views of smoke at 1024 × 1024".
 [[nodiscard]] std::string views_text(const ResultScene& scene);
 /// "bunny: 4 views of smoke at 1024 × 1024, primary rays".

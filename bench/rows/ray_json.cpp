@@ -1,7 +1,7 @@
 #include "bench/rows/ray_json.h"
 
+#include "bench/rows/answer_form.h"
 #include "bench/rows/json_numbers.h"
-#include "core/rays/segments.h"
 
 namespace tetrace {
 
@@ -18,42 +18,13 @@ std::uint32_t word_from(const json& value)
 
 json hit_json(const Hit& hit)
 {
-    return {{"face_id", hit.face_id}, {"tet", hit.tet}, {"t", hit.t}, {"u", hit.u}, {"v", hit.v}, {"steps", hit.steps}};
+    return answers_of(Task::trace).to_json(hit);
 }
 
 Hit hit_from(const json& object)
 {
-    return {word_from(object.at("face_id")), word_from(object.at("tet")), float_from(object.at("t")),
-            float_from(object.at("u")),      float_from(object.at("v")),  word_from(object.at("steps"))};
+    return answers_of(Task::trace).from_json(object);
 }
-
-namespace {
-
-json segments_json(const Segments& all)
-{
-    return {{"first", all.first}, {"last", all.last},         {"length", all.length},
-            {"hash", all.hash},   {"reversed", all.reversed}, {"crossings", all.crossings}};
-}
-
-json answer_json(const Hit& answer, Task task)
-{
-    return task == Task::segments ? segments_json(segments_of(answer)) : hit_json(answer);
-}
-
-/// The answers of the two tasks have different keys.
-Task task_of(const json& answer)
-{
-    return answer.contains("crossings") ? Task::segments : Task::trace;
-}
-
-Hit answer_from(const json& object)
-{
-    if (task_of(object) == Task::trace) return hit_from(object);
-    return as_hit({word_from(object.at("first")), word_from(object.at("last")), word_from(object.at("length")),
-                   word_from(object.at("hash")), word_from(object.at("reversed")), word_from(object.at("crossings"))});
-}
-
-} // namespace
 
 json wrong_ray_json(const WrongRay& ray)
 {
@@ -61,8 +32,8 @@ json wrong_ray_json(const WrongRay& ray)
                    {"x", ray.x},
                    {"y", ray.y},
                    {"reason", ray.reason},
-                   {"ours", answer_json(ray.ours, ray.task)}};
-    if (ray.task != Task::segments) object["exact"] = {{"face_id", ray.reference_face}, {"t", ray.reference_t}};
+                   {"ours", answers_of(ray.task).to_json(ray.ours)}};
+    if (traits_of(ray.task).finds_hits) object["exact"] = {{"face_id", ray.reference_face}, {"t", ray.reference_t}};
     return object;
 }
 
@@ -71,8 +42,8 @@ json differing_ray_json(const DifferingRay& ray)
     return {{"view", ray.view},
             {"x", ray.x},
             {"y", ray.y},
-            {"ours", answer_json(ray.ours, ray.task)},
-            {"openmp", answer_json(ray.openmp, ray.task)}};
+            {"ours", answers_of(ray.task).to_json(ray.ours)},
+            {"openmp", answers_of(ray.task).to_json(ray.openmp)}};
 }
 
 WrongRay wrong_ray_from(const json& object)
@@ -81,9 +52,9 @@ WrongRay wrong_ray_from(const json& object)
     ray.view = word_from(object.at("view"));
     ray.x = word_from(object.at("x"));
     ray.y = word_from(object.at("y"));
-    ray.ours = answer_from(object.at("ours"));
-    ray.task = task_of(object["ours"]);
-    if (ray.task != Task::segments) {
+    ray.task = task_of(object.at("ours"));
+    ray.ours = answers_of(ray.task).from_json(object["ours"]);
+    if (traits_of(ray.task).finds_hits) {
         ray.reference_face = word_from(object.at("exact").at("face_id"));
         ray.reference_t = float_from(object["exact"].at("t"));
     }
@@ -93,8 +64,10 @@ WrongRay wrong_ray_from(const json& object)
 
 DifferingRay differing_ray_from(const json& object)
 {
-    return {word_from(object.at("view")),   word_from(object.at("x")),        word_from(object.at("y")),
-            answer_from(object.at("ours")), answer_from(object.at("openmp")), task_of(object["ours"])};
+    const Task task = task_of(object.at("ours"));
+    const AnswerForm& form = answers_of(task);
+    return {word_from(object.at("view")),   word_from(object.at("x")),           word_from(object.at("y")),
+            form.from_json(object["ours"]), form.from_json(object.at("openmp")), task};
 }
 
 } // namespace tetrace

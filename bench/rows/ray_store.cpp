@@ -67,7 +67,7 @@ const std::vector<Quad>& RayStore::rows(SceneWork& scene, const RowKey& key, con
     const auto [entry, is_new] = rows_.try_emplace({set_key, key.kernel.task, key.kernel.structure, key.order});
     if (!is_new) return entry->second;
     const RaySet& rays = set(scene, key.rays, key.ray_order, view);
-    if (key.kernel.task == Task::segments)
+    if (traits_of(key.kernel.task).crosses)
         entry->second = segment_quads(rays, *packed);
     else
         entry->second = key.kernel.structure == Structure::cdt ? given_quads(rays, *packed)

@@ -20,7 +20,7 @@ std::uint64_t launch_bytes(const RowRun& row, const ViewBatch& views)
     std::vector<std::size_t> rays;
     for (const std::size_t view : views)
         rays.push_back(ray_count(row, view));
-    const bool are_given = row.key.kernel.task != Task::trace;
+    const bool are_given = traits_of(row.key.kernel.task).takes_rays;
     if (are_given) rays = {ray_count(row, views)};
     const std::uint64_t output = OutputParts(rays, HIT_WORDS).words() * sizeof(std::uint32_t);
     return are_given ? std::max<std::uint64_t>(output, GIVEN_RAY_QUADS * sizeof(Quad) * rays.front()) : output;
@@ -51,7 +51,7 @@ std::vector<Quad> joined_quads(RowRun& row, const ViewBatch& views)
 std::size_t ray_count(const RowRun& row, std::size_t view)
 {
     SceneWork& scene = *row.scene;
-    if (row.key.kernel.task == Task::trace) return scene.rays_per_view();
+    if (!traits_of(row.key.kernel.task).takes_rays) return scene.rays_per_view();
     return scene.given_rays().set(scene, row.key.rays, row.key.ray_order, view).rays.size();
 }
 
@@ -67,14 +67,14 @@ std::uint64_t hash_of_rays(const RowRun& row)
 std::uint32_t pixel_of_ray(const RowRun& row, std::size_t view, std::size_t ray)
 {
     SceneWork& scene = *row.scene;
-    if (row.key.kernel.task == Task::trace) return static_cast<std::uint32_t>(ray);
+    if (!traits_of(row.key.kernel.task).takes_rays) return static_cast<std::uint32_t>(ray);
     return scene.given_rays().set(scene, row.key.rays, row.key.ray_order, view).rays[ray].pixel;
 }
 
 TraceJob job_of(const RowRun& row, std::size_t view)
 {
     SceneWork& scene = *row.scene;
-    if (row.key.kernel.task == Task::trace)
+    if (!traits_of(row.key.kernel.task).takes_rays)
         return scene.job(view, row.packed != nullptr ? &row.packed->data : nullptr, row.device);
     const RaySet& set = scene.given_rays().set(scene, row.key.rays, row.key.ray_order, view);
     return given_job(set.rays.size(), step_cap(scene.counts().tets, row.device), set.any_hit);
@@ -136,7 +136,7 @@ std::size_t ray_count(const RowRun& row, const ViewBatch& views)
 std::vector<TraceJob> prepare_batch(RowRun& row, const ViewBatch& views)
 {
     std::vector<TraceJob> jobs;
-    if (row.key.kernel.task == Task::trace) {
+    if (!traits_of(row.key.kernel.task).takes_rays) {
         for (const std::size_t view : views)
             jobs.push_back(job_of(row, view));
         return jobs;

@@ -174,18 +174,25 @@ std::vector<RowKey> rows_of_scene(const Options& options, const std::string& sce
     return rows;
 }
 
-/// Rows of a task, trace or segments: of primary rays, and of given rays in each order asked for, kind after kind.
-std::vector<RowKey> rows_of_kinds(const Options& options, Task task, const std::string& scene,
+bool crosses(Task task)
+{
+    return traits_of(task).crosses;
+}
+
+/// The task of rows of rays of a kind: all but primary ones are given.
+Task task_for(Task asked, RayKind kind)
+{
+    return asked == Task::trace && kind != RayKind::primary ? Task::rays : asked;
+}
+
+/// Rows of a task: of primary rays, and of given rays in each order asked for, kind after kind.
+std::vector<RowKey> rows_of_kinds(const Options& options, Task asked, const std::string& scene,
                                   const std::vector<Backend*>& backends)
 {
-    static const std::vector<KernelId> given_kernels = kernels_of(Task::rays);
-    static const std::vector<KernelId> segment_kernels = kernels_of(Task::segments);
-    const bool are_segments = task == Task::segments;
     std::vector<RowKey> rows;
     for (const RayKind kind : options.rays.empty() ? std::vector{RayKind::primary} : options.rays) {
-        if (are_segments && !has_segments(kind)) continue;
-        const bool is_given = are_segments || kind != RayKind::primary;
-        const auto& kernels = are_segments ? segment_kernels : is_given ? given_kernels : all_kernels();
+        const bool is_given = traits_of(task_for(asked, kind)).takes_rays;
+        const auto kernels = kernels_for(asked, kind);
         const auto orders = is_given && !options.ray_orders.empty() ? options.ray_orders : std::vector{RayOrder::tiles};
         for (const RayOrder order : orders)
             for (RowKey key : rows_of_scene(options, scene, backends, kernels)) {
@@ -244,7 +251,7 @@ void require_named_devices(const Options& options, const std::vector<Backend*>& 
     }
 }
 
-constexpr const char* segments_rule =
+constexpr const char* crossing_rule =
     "; rows of --task segments are of maria and project on tets that name their corners, with schedule tiles, math "
     "mode exact, and rays of kinds primary, diffuse and random";
 
@@ -266,7 +273,8 @@ std::string reasons(const Options& options)
         throw Error(ErrorKind::usage,
                     "no row has this combination of --structure, --method, --layout, --task, --rays, --backend, "
                     "--device, --schedule and --math" +
-                        std::string(has(options.tasks, Task::segments) ? segments_rule : "") + reasons(options) +
+                        std::string(std::ranges::any_of(options.tasks, crosses) ? crossing_rule : "") +
+                        reasons(options) +
                         fmt::format("\n'tetrace {} --list' prints the rows of the defaults",
                                     options.verb == Verb::check ? "check" : "bench"));
     std::string text = fmt::format("--filter '{:.200}' matches none of the {} rows selected otherwise:", options.filter,
@@ -311,7 +319,7 @@ bool same_work(const RowKey& a, const RowKey& b)
 bool same_rays(RowKey a, RowKey b)
 {
     for (RowKey* key : {&a, &b}) {
-        key->kernel = {.task = key->kernel.task == Task::segments ? Task::segments : Task::trace};
+        key->kernel = {.task = asked_task(key->kernel.task)};
         key->order = {};
     }
     return same_work(a, b);
@@ -373,15 +381,16 @@ std::vector<std::string> missing_devices(const Options& options, const std::vect
     return sentences;
 }
 
-bool has_segments(RayKind kind)
+std::vector<KernelId> kernels_for(Task asked, RayKind kind)
 {
-    return kind != RayKind::shadow && kind != RayKind::ao;
+    const bool has_end = kind == RayKind::shadow || kind == RayKind::ao;
+    return has_end && crosses(asked) ? std::vector<KernelId>() : kernels_of(task_for(asked, kind));
 }
 
 std::string kernel_title(const RowKey& key)
 {
     const KernelId& kernel = key.kernel;
-    std::string title(kernel.task == Task::segments ? name_of(kernel.task) : name_of(kernel.structure));
+    std::string title(crosses(kernel.task) ? name_of(kernel.task) : name_of(kernel.structure));
     if (kernel.structure == Structure::cdt) title.append(" ").append(name_of(kernel.method));
     title += ' ';
     if (is_embree(kernel.layout))
@@ -409,7 +418,7 @@ std::optional<KernelId> kernel_named(std::string_view method, std::string_view l
 std::string rays_title(const RowKey& key)
 {
     std::string title = key.scene;
-    if (key.kernel.task == Task::segments) title += ", segments";
+    if (crosses(key.kernel.task)) title.append(", ").append(name_of(key.kernel.task));
     if (key.rays != RayKind::primary) title += fmt::format(", {} rays", name_of(key.rays));
     if (key.ray_order != RayOrder::tiles) title += fmt::format(" {}", name_of(key.ray_order));
     return title;

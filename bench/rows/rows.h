@@ -32,7 +32,7 @@ struct RowKey {
 [[nodiscard]] bool same_work(const RowKey& a, const RowKey& b);
 
 /// Whether two rows trace the same rays of the same scene in the same order, with any kernels on any device, and
-/// both or neither for their segments.
+/// for the same task.
 [[nodiscard]] bool same_rays(RowKey a, RowKey b);
 
 /// Whether two rows run in the same place: a backend's device, with the same threads.
@@ -53,8 +53,9 @@ struct RowKey {
                                                    std::string_view math, std::string_view schedule,
                                                    Task task = Task::trace);
 
-/// Whether rays of the kind have rows of task segments, which go on to where a ray leaves the domain.
-[[nodiscard]] bool has_segments(RayKind kind);
+/// The kernels that rows of a task, as options call it, have for rays of a kind. None where a task crosses the domain
+/// and the rays have an end.
+[[nodiscard]] std::vector<KernelId> kernels_for(Task asked, RayKind kind);
 
 /// Name without the scene, for tables under the scene's heading: "cdt maria tet80".
 [[nodiscard]] std::string kernel_title(const RowKey& key);

@@ -88,7 +88,7 @@ void SceneWork::keep_first_views(std::size_t count)
 
 std::uint64_t SceneWork::entering(const RowKey& key, std::size_t view)
 {
-    const bool is_image = key.rays == RayKind::primary && key.kernel.task != Task::segments;
+    const bool is_image = !traits_of(key.kernel.task).takes_rays;
     const auto [entry, is_new] = entering_.try_emplace({key.rays, is_image, view});
     if (!is_new) return entry->second;
     const Domain& domain = loaded().scene.domain;

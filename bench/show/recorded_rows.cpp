@@ -91,7 +91,7 @@ RowRecord record_from(const ResultValue& value, const ResultRow& row)
     read_older(record, value);
     RowKey& key = record.key;
     key.scene = row.scene;
-    if (key.kernel.task != Task::segments) key.kernel.task = key.rays == RayKind::primary ? Task::trace : Task::rays;
+    if (key.kernel.task == Task::trace && key.rays != RayKind::primary) key.kernel.task = Task::rays;
     const nlohmann::json schedule = row.schedule; // older results have it in the row's name
     read_into(key.kernel.schedule, ResultValue(schedule, row.name));
     key.kernel = known_kernel(key.kernel, value);

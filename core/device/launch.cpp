@@ -47,7 +47,7 @@ std::uint32_t stack_bytes_of_item(Layout layout)
 
 std::size_t words_per_ray(Task task)
 {
-    return task == Task::search ? 1 : HIT_WORDS;
+    return traits_of(task).words;
 }
 
 void require_output_fits(std::size_t words, std::uint64_t max_buffer_bytes)

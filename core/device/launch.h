@@ -37,7 +37,7 @@ static_assert(sizeof(LaunchParams) == 128, "every backend reads LaunchParams, se
 /// (kernels/stack.h).
 [[nodiscard]] std::uint32_t stack_bytes_of_item(Layout layout);
 
-/// Words that a kernel writes per ray: a hit, or a face.
+/// Words that a kernel writes per ray: its answer.
 [[nodiscard]] std::size_t words_per_ray(Task task);
 
 /// Throws Error{unsupported} with both numbers if a launch's output exceeds the largest buffer; 0 is not a limit.

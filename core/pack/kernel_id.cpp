@@ -9,7 +9,7 @@ namespace tetrace {
 
 namespace {
 
-/// A row of kernels/kernel_list.inc; the list's words are the constants below.
+/// A row of kernels/kernel_list.inc.
 struct KernelRow {
     Method method;
     Layout layout;
@@ -25,6 +25,7 @@ constexpr unsigned bit(T value)
 
 const std::vector<KernelRow>& kernel_rows()
 {
+    // The list's words are these constants.
     constexpr unsigned trace = bit(Task::trace), rays = bit(Task::rays), search = bit(Task::search),
                        segments = bit(Task::segments);
     constexpr unsigned tiles = bit(Schedule::tiles), persistent = bit(Schedule::persistent),
@@ -103,9 +104,9 @@ bool has_packets(const KernelId& kernel)
 
 bool has_task(const KernelId& kernel)
 {
-    const bool is_hit = kernel.task == Task::trace || kernel.task == Task::rays;
-    if (!is_hit && kernel.schedule != Schedule::tiles) return false;
-    if (kernel.task == Task::segments && kernel.math != MathMode::exact) return false;
+    const TaskTraits& task = traits_of(kernel.task);
+    if (!task.finds_hits && kernel.schedule != Schedule::tiles) return false;
+    if (task.crosses && kernel.math != MathMode::exact) return false;
     return (row_of(kernel).tasks & bit(kernel.task)) != 0;
 }
 
@@ -165,10 +166,34 @@ std::string_view name_of(Layout value)
 
 std::string name_of(const KernelId& kernel)
 {
-    const bool is_hit = kernel.task == Task::trace || kernel.task == Task::rays;
-    std::string name(is_hit ? name_of(kernel.structure) : name_of(kernel.task));
+    std::string name(traits_of(kernel.task).finds_hits ? name_of(kernel.structure) : name_of(kernel.task));
     name.append("/").append(name_of(kernel.method)).append("/").append(name_of(kernel.layout));
     return name;
+}
+
+const TaskTraits& traits_of(Task task)
+{
+    switch (task) {
+    case Task::trace: {
+        static constexpr TaskTraits trace{
+            .takes_rays = false, .finds_hits = true, .crosses = false, .words = HIT_WORDS};
+        return trace;
+    }
+    case Task::rays: {
+        static constexpr TaskTraits rays{.takes_rays = true, .finds_hits = true, .crosses = false, .words = HIT_WORDS};
+        return rays;
+    }
+    case Task::search: {
+        static constexpr TaskTraits search{.takes_rays = true, .finds_hits = false, .crosses = false, .words = 1};
+        return search;
+    }
+    case Task::segments: {
+        static constexpr TaskTraits segments{
+            .takes_rays = true, .finds_hits = false, .crosses = true, .words = HIT_WORDS};
+        return segments;
+    }
+    }
+    throw Error(ErrorKind::internal, "traits_of: no such task");
 }
 
 const MethodTraits& traits_of(Method method)

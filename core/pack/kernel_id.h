@@ -59,6 +59,23 @@ inline constexpr auto enum_names<Schedule> = names_up_to<Schedule::pipeline>("ti
 enum class Task { trace, rays, search, segments };
 template <>
 inline constexpr auto enum_names<Task> = names_up_to<Task::segments>("trace", "rays", "search", "segments");
+/// What those who know nothing else of a task ask of it.
+struct TaskTraits {
+    bool takes_rays; ///< given to a session; else they are an image's
+    bool finds_hits; ///< its answers are hits (core/rays/hit.h), in any schedule and math mode that the kernel has;
+                     ///< other tasks have only schedule tiles
+    bool crosses;    ///< it goes through occlusive faces, to where a ray leaves the domain: no ray has an end, and math
+                     ///< mode is exact
+    std::size_t words; ///< of a ray's answer
+};
+[[nodiscard]] const TaskTraits& traits_of(Task task);
+
+/// The task by which options and results call it: given rays are of task trace, too.
+[[nodiscard]] constexpr Task asked_task(Task task)
+{
+    return task == Task::rays ? Task::trace : task;
+}
+
 /// The order of the tets in memory: along a space-filling curve; the same, with the tets that no ray from outside
 /// reaches (inside closed surfaces) after all others; the same in chains, each tet followed by its neighbour across its
 /// largest free face; as the tetrahedralization wrote them.
@@ -82,8 +99,7 @@ struct KernelId {
 /// the CDT, then of our BVHs, then foreign ones; each by schedule, tiles first, and math mode, exact first.
 [[nodiscard]] const std::vector<KernelId>& all_kernels();
 
-/// Whether the list has the kernel with that task, in any math mode; exit searches and segments have only schedule
-/// tiles, and segments only math mode exact.
+/// Whether the list has the kernel with that task (kernels/kernel_list.inc, TaskTraits).
 [[nodiscard]] bool has_task(const KernelId& kernel);
 
 /// Whether the kernel has packets; its schedule is ignored. Only one walk is written for packets, in exact mode.
@@ -116,8 +132,8 @@ struct KernelId {
 [[nodiscard]] std::string_view name_of(Method value);
 [[nodiscard]] std::string_view name_of(Layout value);
 
-/// structure/method/layout, for example "cdt/maria/tet80"; "search/maria/tet80" for task search, "segments/maria/tet80"
-/// for task segments; for task rays the same as for trace.
+/// structure/method/layout, for example "cdt/maria/tet80"; of a task that finds no hits its name in place of the
+/// structure, "segments/maria/tet80".
 [[nodiscard]] std::string name_of(const KernelId& kernel);
 
 struct Bvh;

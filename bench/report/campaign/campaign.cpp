@@ -107,7 +107,7 @@ ReadResult read_one(const std::filesystem::path& path)
     for (const ReportRow& row : report_rows(file, 0))
         if (row.rate)
             add_rate(read, file, *row.row, row.kernel() + "  " + row.api, row.row->backend + " " + row.layout,
-                     rays_text(row.rays, row.are_segments));
+                     rays_text(row.rays, row.task));
     for (const ResultRow& row : file.searches)
         add_rate(read, file, row, search_label(row), "", "searches");
     return read;
