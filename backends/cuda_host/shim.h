@@ -14,6 +14,7 @@
 #define __global__
 #define __shared__ thread_local
 #define __restrict__ __restrict
+#define KEEP_LOOP
 
 /// CUDA's vectors, which a device loads or stores at once.
 struct alignas(8) uint2 {

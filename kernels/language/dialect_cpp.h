@@ -9,6 +9,7 @@
 #define MAYBE_UNUSED [[maybe_unused]] // before a parameter that some layouts do not need
 #define PRECISE                       // contraction is switched off by the compiler's flags
 #define KEEP_BRANCH asm volatile("")  // a compiler makes no select of a branch with such a statement
+#define KEEP_LOOP                     // before a loop that a GPU should not unroll
 #define STRUCT(name) struct name
 #define VEC3(x, y, z) (Vec3{(x), (y), (z)})
 #define FETCH(scene, array, index) (assert((index) < (scene).array##_size()), (scene).array()[(index)])

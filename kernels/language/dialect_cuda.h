@@ -4,6 +4,9 @@
 // A call here would cost all rays more registers than the code itself.
 #define RARE_FN KERNEL_FN
 #define MAYBE_UNUSED [[maybe_unused]]
+#ifndef KEEP_LOOP // the host's emulation has none
+#define KEEP_LOOP _Pragma("unroll 1")
+#endif
 #define PRECISE // contraction is switched off by the compiler's flags
 #define STRUCT(name) struct name
 #define VEC3(x, y, z) (Vec3{(x), (y), (z)})

@@ -17,6 +17,7 @@
 #define KEEP_BRANCH __asm__ volatile("")
 #endif
 #define MAYBE_UNUSED __attribute__((unused))
+#define KEEP_LOOP _Pragma("unroll 1")
 #define PRECISE // contraction is switched off for the whole program
 #define STRUCT(name)                                                                                                   \
     typedef struct name name;                                                                                          \
