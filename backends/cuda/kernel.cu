@@ -69,12 +69,19 @@ struct Rays {
     {
         return __ldg(given + number * ray_count(launch) + ray_index(pixel(item)));
     }
+    __device__ bool are_given() const { return given != nullptr; }
+    __device__ uint half_face(uint item) const { return quad(item, 0u).w; } // given
     __device__ Ray ray(uint item) const
     {
         if (given != nullptr) return given_ray(quad(item, 0u), quad(item, 1u));
         return primary_ray(launch.trace, pixel(item).x, pixel(item).y);
     }
     __device__ real end(uint item) const { return given == nullptr ? real(NO_END) : as_real(quad(item, 1u).w); }
+    __device__ Hit traced(SceneView scene, uint item) const
+    {
+        if (given != nullptr) return trace_given(scene, launch.trace, quad(item, 0u), quad(item, 1u));
+        return trace(scene, launch.trace, ray(item));
+    }
     __device__ void write(uint item, Hit hit) const { write_hit(hit, output_word(launch, pixel(item)), output); }
 };
 
