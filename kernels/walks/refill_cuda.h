@@ -1,6 +1,6 @@
-// Persistent warps for walks through records (kernels/refill_cuda.h). Lanes take a few steps from one vote to the next.
-// What few rays need, a walk that begins anew or may be in a circle, is left to trace() and trace_given(), which then
-// trace the ray from its beginning.
+// Persistent warps for walks through records (kernels/refill_cuda.h; docs/spec/devices.md, W11). Lanes take a few steps
+// from one vote to the next. What few rays need, a walk that begins anew or may be in a circle, is left to trace() and
+// trace_given(), which then trace the ray from its beginning.
 #ifndef TETRACE_KERNELS_WALKS_REFILL_CUDA_H
 #define TETRACE_KERNELS_WALKS_REFILL_CUDA_H
 
@@ -71,7 +71,7 @@ KERNEL_FN void trace_refilled(SceneView scene, TraceParams params, const Rays& r
             return goes_on(at, pause, is_endless, reach);
         },
         [&](uint item) {
-            Walker ended = at;
+            Walker ended = at; // reset before what takes many registers: else the compiler keeps the old walk there
             ray = {};
             shear = {};
             at = {};
