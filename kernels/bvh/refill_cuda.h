@@ -27,11 +27,5 @@ KERNEL_FN void trace_refilled(SceneView scene, TraceParams params, const Rays& r
 #include KERNEL_LOOP_HEADER
             return TOGETHER_GOES_ON;
         },
-        [&](uint item) {
-            Nearest found = nearest;
-            frame = {};
-            nearest = {};
-            TRAVERSAL_AT_ROOT()
-            return hit_of(scene, rays.ray(item), found);
-        });
+        [&](uint item) { return hit_of(scene, rays.ray(item), nearest); });
 }
