@@ -51,12 +51,14 @@ KERNEL_FN void trace_tiles(SceneView scene, LaunchParams launch, uint* output)
 // Schedule persistent: as many blocks of whole warps as the device holds at once. Their warps stay, and fetch rays by
 // number, one tile's after another's, from a counter, which is 0 at first, until none of the `tiles` is left.
 #ifdef REFILLS_LANES
-// The rays of a launch by number: those of an image, or given ones.
+// The rays of a launch by number: those of an image, or given ones. Which is known when it is compiled: with both kinds
+// in one program, either waits for the other's registers.
+template <bool ARE_GIVEN>
 struct Rays {
     LaunchParams launch;
     uint tiles;
     uint* output;
-    const uint4* given; // or null
+    const uint4* given; // if ARE_GIVEN
 
     __device__ uint items() const { return tiles * (TILE_WIDTH * launch.tile_height); }
     __device__ Pixel pixel(uint item) const
@@ -69,24 +71,32 @@ struct Rays {
     {
         return __ldg(given + number * ray_count(launch) + ray_index(pixel(item)));
     }
+    __device__ static constexpr bool are_given() { return ARE_GIVEN; }
+    __device__ uint half_face(uint item) const { return quad(item, 0u).w; } // of given rays
     __device__ Ray ray(uint item) const
     {
-        if (given != nullptr) return given_ray(quad(item, 0u), quad(item, 1u));
+        if (ARE_GIVEN) return given_ray(quad(item, 0u), quad(item, 1u));
         return primary_ray(launch.trace, pixel(item).x, pixel(item).y);
     }
-    __device__ real end(uint item) const { return given == nullptr ? real(NO_END) : as_real(quad(item, 1u).w); }
+    __device__ real end(uint item) const { return ARE_GIVEN ? as_real(quad(item, 1u).w) : real(NO_END); }
+    // By trace() or trace_given().
+    __device__ Hit traced(SceneView scene, uint item) const
+    {
+        if (ARE_GIVEN) return trace_given(scene, launch.trace, quad(item, 0u), quad(item, 1u));
+        return trace(scene, launch.trace, ray(item));
+    }
     __device__ void write(uint item, Hit hit) const { write_hit(hit, output_word(launch, pixel(item)), output); }
 };
 
 KERNEL_FN void trace_persistent(SceneView scene, LaunchParams launch, uint* output, uint* counter, uint tiles)
 {
-    trace_refilled(scene, launch.trace, Rays{launch, tiles, output, nullptr}, counter);
+    trace_refilled(scene, launch.trace, Rays<false>{launch, tiles, output, nullptr}, counter);
 }
 
 KERNEL_FN void trace_given_persistent(SceneView scene, LaunchParams launch, uint* output, uint* counter, uint tiles,
                                       const uint4* __restrict__ rays)
 {
-    trace_refilled(scene, launch.trace, Rays{launch, tiles, output, rays}, counter);
+    trace_refilled(scene, launch.trace, Rays<true>{launch, tiles, output, rays}, counter);
 }
 #else
 // Fetches the next warp-full of rays. Returns the number of the calling thread's ray.
