@@ -64,6 +64,11 @@ private:
         } else if (what == Request::run_defect) {
             const auto words = backend_->run_defect(device, request.get_text());
             answer.put_all(std::span<const std::uint32_t>(words));
+        } else if (what == Request::compiled) {
+            const auto has_kernel = request.get<bool>();
+            const auto kernel = request.get<KernelId>();
+            put_code(answer, backend_->compiled(device, has_kernel ? std::optional(kernel) : std::nullopt,
+                                                request.get<bool>()));
         } else {
             const auto yardstick = backend_->yardstick(device, get_options(request));
             answer.put(yardstick.has_value());

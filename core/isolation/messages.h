@@ -109,6 +109,7 @@ enum class Request : std::uint32_t {
     probe,
     yardstick,
     run_defect,
+    compiled,
     open,
     set_rays,
     launch,
@@ -120,6 +121,9 @@ enum class Request : std::uint32_t {
 
 void put_devices(ByteWriter& to, const std::vector<Device>& devices);
 [[nodiscard]] std::vector<Device> get_devices(ByteReader& from);
+
+void put_code(ByteWriter& to, const CompiledCode& code);
+[[nodiscard]] CompiledCode get_code(ByteReader& from);
 
 void put_options(ByteWriter& to, const SessionOptions& options);
 [[nodiscard]] SessionOptions get_options(ByteReader& from);
