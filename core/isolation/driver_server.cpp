@@ -33,7 +33,7 @@ public:
             ByteReader request(std::move(message.bytes));
             const auto what = request.get<Request>();
             if (what < Request::open)
-                answer_backend(answer, what, request);
+                answer_backend(answer, what, request, std::move(message.file));
             else if (what == Request::open)
                 open(answer, request, std::move(message.file));
             else
@@ -51,7 +51,7 @@ private:
         std::unique_ptr<Session> session;
     };
 
-    void answer_backend(ByteWriter& answer, Request what, ByteReader& request)
+    void answer_backend(ByteWriter& answer, Request what, ByteReader& request, Descriptor file)
     {
         if (what == Request::devices) return put_devices(answer, backend_->devices());
         const auto device = request.get<std::uint64_t>();
@@ -67,8 +67,10 @@ private:
         } else if (what == Request::compiled) {
             const auto has_kernel = request.get<bool>();
             const auto kernel = request.get<KernelId>();
-            put_code(answer, backend_->compiled(device, has_kernel ? std::optional(kernel) : std::nullopt,
-                                                request.get<bool>()));
+            const auto starts_outside = request.get<bool>();
+            const auto code =
+                backend_->compiled(device, has_kernel ? std::optional(kernel) : std::nullopt, starts_outside);
+            put_code(answer, code, SharedMemory(std::move(file), max_code_bytes));
         } else {
             const auto yardstick = backend_->yardstick(device, get_options(request));
             answer.put(yardstick.has_value());

@@ -274,8 +274,9 @@ CompiledCode IsolatedBackend::compiled(std::size_t device, const std::optional<K
     request.put(kernel.value_or(KernelId{}));
     request.put(starts_outside);
     const std::string what = kernel ? name_of(*kernel) : "an empty kernel";
-    ByteReader answer = child_of(device)->call({"compiling " + what, request, -1, call_limit_s(0)});
-    return get_code(answer);
+    const SharedMemory text(max_code_bytes);
+    ByteReader answer = child_of(device)->call({"compiling " + what, request, text.file(), call_limit_s(0)});
+    return get_code(answer, text);
 }
 
 std::optional<Yardstick> IsolatedBackend::yardstick(std::size_t device, const SessionOptions& options)

@@ -135,8 +135,12 @@ std::vector<Device> get_devices(ByteReader& from)
     return devices;
 }
 
-void put_code(ByteWriter& to, const CompiledCode& code)
+void put_code(ByteWriter& to, const CompiledCode& code, const SharedMemory& text)
 {
+    if (code.text.size() > text.bytes().size())
+        throw Error(ErrorKind::unsupported, "the code has " + std::to_string(code.text.size()) +
+                                                " bytes of text, at most " + std::to_string(text.bytes().size()) +
+                                                " are possible");
     to.put_text(code.compiler);
     to.put(code.lanes);
     to.put(std::uint64_t{code.statistics.size()});
@@ -144,11 +148,12 @@ void put_code(ByteWriter& to, const CompiledCode& code)
         to.put_text(name);
         to.put(value);
     }
-    to.put_text(code.text);
+    std::ranges::copy(std::as_bytes(std::span(code.text)), text.bytes().begin());
+    to.put(std::uint64_t{code.text.size()});
     to.put_text(code.messages);
 }
 
-CompiledCode get_code(ByteReader& from)
+CompiledCode get_code(ByteReader& from, const SharedMemory& text)
 {
     CompiledCode code;
     code.compiler = from.get_text();
@@ -157,7 +162,8 @@ CompiledCode get_code(ByteReader& from)
         const std::string name = from.get_text();
         code.statistics[name] = from.get<double>();
     }
-    code.text = from.get_text();
+    const auto length = std::min<std::uint64_t>(from.get<std::uint64_t>(), text.bytes().size());
+    code.text.assign(reinterpret_cast<const char*>(text.bytes().data()), length);
     code.messages = from.get_text();
     return code;
 }

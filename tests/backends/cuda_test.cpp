@@ -172,9 +172,10 @@ TEST(CudaDriver, says_what_it_made_of_a_kernel_and_how_many_of_its_warps_fit)
         return cuda::success;
     };
     loaded.driver.device_attribute = [](int* value, int attribute, cuda::Ordinal device) -> cuda::Result {
-        *value = 2048;
-        return attribute == 39 ? cuda::success
-                               : cuda_host::emulated_driver().device_attribute(value, attribute, device);
+        *value = attribute == 39 ? 2048 : 32; // threads of a multiprocessor and of a warp; the host's warps have one
+        return attribute == 39 || attribute == cuda::attribute_warp_size
+                   ? cuda::success
+                   : cuda_host::emulated_driver().device_attribute(value, attribute, device);
     };
     const cuda::DriverBackend backend({"cuda", "CUDA events", [&] { return loaded; }, cuda::embedded_programs});
     if (!backend.devices()[0].usable) GTEST_SKIP() << backend.devices()[0].reason;
