@@ -119,6 +119,7 @@ std::vector<Device> list_devices(const LoadedDriver& loaded, const Programs& pro
         Device& device =
             devices.emplace_back(printable(describe(driver, ordinal_of(driver, static_cast<std::size_t>(i)))));
         device.library = printable_line(loaded.library);
+        device.reports_code = !driver.is_emulation();
         device.usable = !programs.code.empty() || programs.has_nvrtc();
         if (!device.usable)
             device.reason = "this program was built without compiled CUDA kernels (nvcc makes them for the GPUs of the "

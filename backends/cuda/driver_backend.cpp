@@ -1,5 +1,6 @@
 #include "backends/cuda/driver_backend.h"
 
+#include "backends/cuda/code.h"
 #include "backends/cuda/device.h"
 #include "backends/cuda/program.h"
 #include "backends/cuda/session.h"
@@ -185,6 +186,15 @@ std::vector<std::uint32_t> DriverBackend::run_defect(std::size_t device, std::st
     const auto words = defect_words();
     return words_of(opened, program.module.function("run_" + std::string(name)), std::as_bytes(std::span(words)),
                     defect_items, defect_items, std::string(name));
+}
+
+CompiledCode DriverBackend::compiled(std::size_t device, const std::optional<KernelId>& kernel,
+                                     bool starts_outside) const
+{
+    const Found& here = require(device);
+    const Driver& driver = here.driver.driver;
+    return compiled_code(driver, ordinal_of(driver, device), here.devices[device], here.programs, kernel,
+                         starts_outside);
 }
 
 std::vector<KernelFile> DriverBackend::kernel_files(const KernelId& kernel) const

@@ -198,6 +198,15 @@ ProgramId program_of(const KernelId& kernel)
     return {std::string(name_of(kernel.method)).append("_").append(name_of(kernel.layout)), kernel.math};
 }
 
+std::string entry_name(const KernelId& kernel, bool starts_outside)
+{
+    const bool starts_inside = kernel.task == Task::trace && !starts_outside && kernel.structure == Structure::cdt;
+    return std::string(starts_inside ? "inside" : name_of(kernel.task))
+        .append("_")
+        .append(name_of(kernel.schedule))
+        .append("_" + program_of(kernel).name());
+}
+
 std::vector<std::string> compiler_options(const ProgramId& id)
 {
     std::vector<std::string> options{"-DKERNEL_NAME=" + id.name()};

@@ -77,6 +77,13 @@ struct ProgramId {
 };
 [[nodiscard]] ProgramId program_of(const KernelId& kernel);
 
+/// As kernel.cu calls a kernel's entry point. starts_outside: of task trace, no ray starts in a tet.
+[[nodiscard]] std::string entry_name(const KernelId& kernel, bool starts_outside);
+
+/// Threads of a block of schedule persistent: four warps, of which enough blocks fit for every warp that a device
+/// holds.
+inline constexpr unsigned persistent_block_threads = 128;
+
 /// NVRTC's options, the same as nvcc's (CMakeLists.txt), including KERNEL_NAME.
 [[nodiscard]] std::vector<std::string> compiler_options(const ProgramId& id);
 

@@ -12,13 +12,6 @@ namespace tetrace::cuda {
 
 namespace {
 
-constexpr unsigned persistent_block_threads = 128; // four warps: enough blocks fit for every warp that a device holds
-
-std::string entry_name(std::string_view prefix, const KernelId& kernel)
-{
-    return std::string(prefix).append("_").append(name_of(kernel.schedule)) + "_" + embedded_name(kernel);
-}
-
 /// One address space needs no limit and no parts, but a smaller limit in the options is still enforced.
 void require_arrays_fit(const PackedScene& scene, std::uint64_t max_buffer_bytes)
 {
@@ -37,10 +30,7 @@ CudaSession::CudaSession(const Driver& driver, Ordinal device, const Programs& p
     : device_(driver, device),
       program_(load_program(device_.context, device_.capability, programs, program_of(kernel), options.program_cache)),
       task_(kernel.task), schedule_(kernel.schedule), stack_bytes_(stack_bytes_of_item(kernel.layout)),
-      outside_(entry(device, entry_name(name_of(kernel.task), kernel))),
-      inside_(kernel.task == Task::trace && structure_of(kernel.layout) == Structure::cdt
-                  ? entry(device, entry_name("inside", kernel))
-                  : outside_),
+      outside_(entry(device, entry_name(kernel, true))), inside_(entry(device, entry_name(kernel, false))),
       domain_(domain_of(scene)), timer_(device_.context), sides_(device_.context, device_.stream.get()),
       tile_height_(tile_height), threads_(options.threads), max_buffer_bytes_(options.max_buffer_bytes),
       launches_(tile_height), bytes_(scene.bytes())

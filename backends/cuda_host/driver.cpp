@@ -197,6 +197,11 @@ Result blocks_per_multiprocessor(int* blocks, FunctionHandle, int, std::size_t)
     return success;
 }
 
+Result function_attribute(int*, int, FunctionHandle)
+{
+    return error_not_supported; // the host's compiler reports nothing
+}
+
 // Memory
 
 Result memory_info(std::size_t* free, std::size_t* total)

@@ -1,5 +1,6 @@
 #include "backends/opencl/backend.h"
 
+#include "backends/opencl/code.h"
 #include "backends/opencl/kernels.h"
 #include "backends/opencl/launch_case.h"
 #include "backends/opencl/probe.h"
@@ -72,6 +73,12 @@ public:
         return opencl::measure_device(*context(device, options.threads), max_buffer(devices().at(device), options));
     }
 
+    [[nodiscard]] CompiledCode compiled(std::size_t device, const std::optional<KernelId>& kernel,
+                                        bool starts_outside) const override
+    {
+        return opencl::compiled_code(*context(device, 0), kernel, starts_outside);
+    }
+
     [[nodiscard]] bool runs_defects() const override { return true; }
     [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name) override
     {
@@ -95,7 +102,7 @@ public:
 
 private:
     /// The context that the device's open sessions share, else a new one. A lost context is not used for new sessions.
-    std::shared_ptr<opencl::Context> context(std::size_t device, unsigned threads)
+    std::shared_ptr<opencl::Context> context(std::size_t device, unsigned threads) const
     {
         if (!devices().at(device).usable) throw Error(ErrorKind::missing, devices()[device].reason);
         Shared& shared = shared_[device];

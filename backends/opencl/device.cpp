@@ -122,6 +122,7 @@ void describe(const cl::Platform& platform, FoundDevice& found)
     facts.group_width = group_width_of(device);
     facts.timer_period_s = 1e-9 * static_cast<double>(device.getInfo<CL_DEVICE_PROFILING_TIMER_RESOLUTION>());
     facts.threads = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+    facts.reports_code = true; // of each kernel OpenCL 1.2 has some figures
     facts.reason = reason_against(device, group_items);
     facts.usable = facts.reason.empty();
     // What a processor's driver calls local memory is memory as any other.

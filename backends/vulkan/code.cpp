@@ -109,13 +109,10 @@ constexpr const char* needed_extension = VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_E
 
 vk::raii::Device make_device(const FoundDevice& found)
 {
-    const vk::raii::PhysicalDevice physical(instance().handle(), found.handle);
-    const auto offered = physical.enumerateDeviceExtensionProperties();
-    if (std::ranges::none_of(offered, [](const vk::ExtensionProperties& extension) {
-            return std::string_view(extension.extensionName.data()) == needed_extension;
-        }))
+    if (!found.facts.reports_code)
         throw Error(ErrorKind::unsupported,
                     "the driver of '" + found.facts.name + "' does not report its code: it lacks " + needed_extension);
+    const vk::raii::PhysicalDevice physical(instance().handle(), found.handle);
     const std::array priorities = {1.0f};
     const auto queue = vk::DeviceQueueCreateInfo{}
                            .setQueueFamilyIndex(found.limits.queue_family.value_or(0))
@@ -211,7 +208,7 @@ CompiledCode compiled_code(const FoundDevice& found, const std::optional<KernelI
             throw Error(ErrorKind::unsupported,
                         "the driver of '" + found.facts.name + "' does not report the code of " + id.name);
         const auto first = vk::PipelineExecutableInfoKHR{}.setPipeline(*pipeline);
-        CompiledCode code{found.facts.driver + ", " + found.facts.name, executables.front().subgroupSize, {}, {}};
+        CompiledCode code{found.facts.driver + ", " + found.facts.name, executables.front().subgroupSize, {}, {}, {}};
         for (const auto& statistic : device.getPipelineExecutableStatisticsKHR(first))
             code.statistics[statistic.name.data()] = value_of(statistic);
         code.text = code_text(device, first);

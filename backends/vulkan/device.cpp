@@ -109,6 +109,7 @@ void describe(const vk::raii::PhysicalDevice& device, FoundDevice& found)
     found.limits.allocation_bytes = chain.get<vk::PhysicalDeviceMaintenance3Properties>().maxMemoryAllocationSize;
     found.facts.max_buffer_bytes = std::min(found.facts.max_buffer_bytes, found.limits.allocation_bytes);
     found.tells_cache_hits = has_extension(extensions, VK_EXT_PIPELINE_CREATION_FEEDBACK_EXTENSION_NAME);
+    found.facts.reports_code = has_extension(extensions, VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
     if (has_extension(extensions, VK_KHR_DRIVER_PROPERTIES_EXTENSION_NAME)) {
         const auto driver = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>()
                                 .get<vk::PhysicalDeviceDriverProperties>();

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <fmt/format.h>
+#include <initializer_list>
 #include <utility>
 
 namespace tetrace {
@@ -87,7 +89,7 @@ std::vector<EntryPoint> all_entry_points(Maker maker)
     std::vector<EntryPoint> points;
     for (const KernelId& kernel : all_kernels()) {
         const bool is_there =
-            kernel.schedule == Schedule::tiles || (maker == Maker::nvidia && kernel.schedule == Schedule::persistent);
+            kernel.schedule == Schedule::tiles || (maker != Maker::amd && kernel.schedule == Schedule::persistent);
         if (is_portable(kernel) && is_there) add_entries(points, kernel);
     }
     return points;
@@ -107,6 +109,51 @@ std::string name_of(const EntryPoint& point)
 {
     const std::string name(name_of(point.entry));
     return point.kernel.schedule == Schedule::tiles ? name : name + " persistent";
+}
+
+std::string code_file_name(const EntryPoint& point)
+{
+    std::string entry = name_of(point);
+    std::ranges::replace(entry, ' ', '-');
+    return fmt::format("-{}-{}-{}-{}.s", name_of(point.kernel.method), name_of(point.kernel.layout),
+                       name_of(point.kernel.math), entry);
+}
+
+namespace {
+
+/// Under the first of these names that the statistics have, if it is a number of this program: NVIDIA's Vulkan has been
+/// seen to report local memory of 2^36 bytes.
+std::optional<double> statistic(const std::map<std::string, double>& statistics,
+                                std::initializer_list<const char*> names)
+{
+    constexpr double most = 1u << 31;
+    for (const char* const name : names)
+        if (const auto found = statistics.find(name);
+            found != statistics.end() && found->second >= 0 && found->second < most)
+            return found->second;
+    return std::nullopt;
+}
+
+} // namespace
+
+void take_statistics(Inspected& row, const std::map<std::string, double>& statistics)
+{
+    const auto count = [&](std::initializer_list<const char*> names) -> Inspected::Count {
+        const auto value = statistic(statistics, names);
+        return value ? Inspected::Count(static_cast<std::uint64_t>(*value)) : std::nullopt;
+    };
+    row.registers = count({"VGPRs", "Register Count", "NUM_REGS"});
+    row.scalar_registers = count({"SGPRs"});
+    const auto vectors = count({"Spilled VGPRs"}), scalars = count({"Spilled SGPRs"});
+    if (vectors || scalars) row.spilled_registers = vectors.value_or(0) + scalars.value_or(0);
+    row.scratch_bytes = count({"Scratch size", "Local Memory Size", "LOCAL_SIZE_BYTES"});
+    row.subgroups = count({"Subgroups per SIMD", "warps per multiprocessor"});
+    row.max_subgroups = count({"max warps per multiprocessor"});
+    row.code_bytes = count({"Code size", "Binary Size"});
+    row.instructions = count({"Instructions"});
+    row.branches = count({"Branches"});
+    row.latency_cycles = statistic(statistics, {"Latency"});
+    row.cycles_a_subgroup = statistic(statistics, {"Inverse Throughput"});
 }
 
 } // namespace tetrace

@@ -2,23 +2,27 @@
 
 #include "bench/inspection/machine_code.h"
 #include "bench/options/options.h"
+#include "core/device/backend.h"
 #include "core/pack/kernel_id.h"
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace tetrace {
 
-/// Whose compiler is asked: Mesa's RADV on null hardware, or nvcc with ptxas.
-enum class Maker { amd, nvidia };
+/// Whose compiler is asked: Mesa's RADV on null hardware; nvcc with ptxas; or the driver of a device that is here.
+enum class Maker { amd, nvidia, driver };
 
-/// A GPU that kernels are compiled for. It need not be here.
+/// A GPU that kernels are compiled for. It need not be here, unless its driver is asked.
 struct Target {
-    std::string name; ///< "gfx1100", "navi21", "sm_90"
+    std::string name; ///< "gfx1100", "navi21", "sm_90"; of a driver's device as in rows: "cuda", "vulkan:1"
     Maker maker = Maker::amd;
+    Backend* backend = nullptr; ///< of the driver's device
+    std::size_t device = 0;     ///< its index
 };
 
 /// "sm_" and a number is NVIDIA's; other lower-case letters and digits are AMD's.
@@ -37,8 +41,8 @@ struct EntryPoint {
     Entry entry = Entry::outside;
 };
 
-/// Every entry point of our kernels that the maker's GPUs get, in the kernels' order. AMD's have no schedule
-/// persistent: Vulkan lacks such kernels.
+/// Every entry point of our kernels that the maker's GPUs may get, in the kernels' order. AMD's have no schedule
+/// persistent: Vulkan lacks such kernels. Not every driver's backend has all.
 [[nodiscard]] std::vector<EntryPoint> all_entry_points(Maker maker);
 
 /// Whether --structure, --method, --layout, --schedule, --math and --entry keep it. Defaults: as for rows, and math
@@ -47,6 +51,9 @@ struct EntryPoint {
 
 /// "outside", "rays", "inside persistent".
 [[nodiscard]] std::string name_of(const EntryPoint& point);
+
+/// What follows the target in the name of a file with an entry point's code: "-maria-tet80-exact-outside.s".
+[[nodiscard]] std::string code_file_name(const EntryPoint& point);
 
 /// Whether a program was compiled.
 enum class InspectedStatus { ok, skipped, error };
@@ -83,7 +90,8 @@ struct Inspected {
     Count fused, divisions;                                  ///< as CodeFigures has them
     std::uint64_t unrounded = 0;                             ///< as CodeFigures has it
     std::string first_fused;
-    Count sass_fused; ///< in NVIDIA's machine code, sequences of divisions included
+    Count sass_fused;                         ///< in NVIDIA's machine code, sequences of divisions included
+    std::map<std::string, double> statistics; ///< of a driver, as CompiledCode has them
 
     [[nodiscard]] std::optional<double> occupancy() const
     {
@@ -104,6 +112,10 @@ struct Inspected {
         return stated ? FusedIn::boxes : FusedIn::decisions;
     }
 };
+
+/// Sets the members of a row that a driver's statistics have, as Mesa 22.3 to 25, NVIDIA's Vulkan and backends/cuda
+/// call them.
+void take_statistics(Inspected& row, const std::map<std::string, double>& statistics);
 
 /// Called with the part of a target's programs that is done, in [0, 1].
 using PartDone = std::function<void(double)>;

@@ -1,5 +1,6 @@
 #include "bench/inspection/inspection.h"
 
+#include "bench/inspection/drivers.h"
 #include "bench/inspection/null_hardware.h"
 #include "bench/inspection/nvcc.h"
 #include "core/base/error.h"
@@ -14,11 +15,24 @@ namespace tetrace {
 
 namespace {
 
-std::vector<EntryPoint> points_of(const Options& options, Maker maker)
+std::vector<EntryPoint> points_of(const Options& options, const Target& target)
 {
-    std::vector<EntryPoint> points = all_entry_points(maker);
-    std::erase_if(points, [&](const EntryPoint& point) { return !wants(options, point); });
+    std::vector<EntryPoint> points = all_entry_points(target.maker);
+    std::erase_if(points, [&](const EntryPoint& point) {
+        return !wants(options, point) || (target.backend != nullptr && !target.backend->has_kernel(point.kernel));
+    });
     return points;
+}
+
+/// Those of --target, and the devices that --backend and --device keep; without these options, the usual GPUs.
+std::vector<Target> asked_targets(const Options& options)
+{
+    auto targets = driver_targets(options);
+    if (targets.empty() || !options.gpus.empty()) {
+        const auto gpus = targets_of(options.gpus);
+        targets.insert(targets.begin(), gpus.begin(), gpus.end());
+    }
+    return targets;
 }
 
 bool is_skipped(const Inspected& row)
@@ -30,22 +44,23 @@ bool is_skipped(const Inspected& row)
 
 Inspection inspect(const Options& options, const Progress& tell)
 {
-    const auto targets = targets_of(options.gpus);
+    const auto targets = asked_targets(options);
+    if (std::ranges::all_of(targets, [&](const Target& target) { return points_of(options, target).empty(); }))
+        throw Error(ErrorKind::usage, "inspect: no kernel has this combination of --structure, --method, --layout, "
+                                      "--schedule, --math and --entry");
     Inspection inspection;
     std::optional<Nvcc> nvcc; // looked for once, and only if it is needed
     for (const Target& target : targets) {
-        const auto points = points_of(options, target.maker);
-        if (points.empty() && target.maker == Maker::amd && !points_of(options, Maker::nvidia).empty()) continue;
-        if (points.empty())
-            throw Error(ErrorKind::usage, "inspect: no kernel has this combination of --structure, --method, --layout, "
-                                          "--schedule, --math and --entry");
+        const auto points = points_of(options, target);
+        if (points.empty()) continue;
         const double first = static_cast<double>(&target - targets.data()), all = static_cast<double>(targets.size());
         const PartDone tell_part = [&](double part) { tell("compiling", (first + part) / all, "for " + target.name); };
         tell_part(0);
         if (target.maker == Maker::nvidia && !nvcc) nvcc = find_nvcc();
         const std::filesystem::path code = options.code_folder.value_or("");
-        auto rows = target.maker == Maker::amd ? ask_null_hardware(target, points, code, tell_part)
-                                               : ask_nvcc(*nvcc, target, points, code, tell_part);
+        auto rows = target.maker == Maker::amd      ? ask_null_hardware(target, points, code, tell_part)
+                    : target.maker == Maker::nvidia ? ask_nvcc(*nvcc, target, points, code, tell_part)
+                                                    : ask_driver(target, points, code, tell_part);
         if (std::ranges::all_of(rows, is_skipped))
             inspection.skipped.push_back(fmt::format("{}: {}", target.name, rows.front().reason));
         std::ranges::move(rows, std::back_inserter(inspection.rows));
@@ -154,6 +169,7 @@ Table short_table(const Inspection& inspection)
                  {"scratch", "scratch", "bytes"},
                  {"subgroups", "subgroups"},
                  {"occupancy", "occupancy", "%", 0},
+                 {"code", "code", "bytes"},
                  {"instructions", "instructions"},
                  {"branches", "branches"},
                  {"loads", "loads in loops"},
@@ -170,9 +186,9 @@ Table short_table(const Inspection& inspection)
                    fmt::format("{} {}{}", name_of(kernel.method), name_of(kernel.layout),
                                kernel.math == MathMode::fast ? " fast" : ""),
                    name_of(row.point), cell_of(row.registers), spilled, cell_of(row.scratch_bytes),
-                   cell_of(row.subgroups), percent_cell(row.occupancy()), cell_of(row.instructions),
-                   cell_of(row.branches), cell_of(row.loads_in_loops), cell_of(row.latency_cycles),
-                   text_cell(fused_text(row)), std::string(name_of(row.status))});
+                   cell_of(row.subgroups), percent_cell(row.occupancy()), cell_of(row.code_bytes),
+                   cell_of(row.instructions), cell_of(row.branches), cell_of(row.loads_in_loops),
+                   cell_of(row.latency_cycles), text_cell(fused_text(row)), std::string(name_of(row.status))});
     }
     return table;
 }
@@ -211,6 +227,7 @@ nlohmann::json row_json(const Inspected& row)
                                                                {"sass_fused", row.sass_fused}};
     for (const auto& [key, count] : counts)
         set_known(object, key, count);
+    if (!row.statistics.empty()) object["statistics"] = row.statistics;
     set_known(object, "latency_cycles", row.latency_cycles);
     set_known(object, "cycles_a_subgroup", row.cycles_a_subgroup);
     if (const auto in = row.fused_in()) object["fused_in"] = name_of(*in);

@@ -6,13 +6,14 @@
 
 namespace tetrace {
 
-/// What every compiler at hand made of the programs asked for.
+/// What every compiler that was asked made of the programs asked for.
 struct Inspection {
     std::vector<Inspected> rows;      ///< target after target
     std::vector<std::string> skipped; ///< "sm_90: no nvcc here, ..." for each target that could not be asked
 };
 
-/// Compiles every entry point that the options keep for every target that they name; runs nothing.
+/// Compiles every entry point that the options keep for every target, and every driver's device, that they name; runs
+/// nothing.
 /// tell: see core/base/progress.h.
 /// Throws Error{usage} if no kernel is kept.
 [[nodiscard]] Inspection inspect(const Options& options, const Progress& tell);

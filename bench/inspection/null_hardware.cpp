@@ -57,15 +57,6 @@ json figures_json(const CodeFigures& figures)
             {"instructions", figures.instructions}};
 }
 
-/// What follows the target in the name of a program's file.
-std::string code_name(const EntryPoint& point)
-{
-    std::string entry = name_of(point);
-    std::ranges::replace(entry, ' ', '-');
-    return fmt::format("-{}-{}-{}-{}.s", name_of(point.kernel.method), name_of(point.kernel.layout),
-                       name_of(point.kernel.math), entry);
-}
-
 json compiled_json(const Backend& source, std::size_t device, const EntryPoint& point, const fs::path& code)
 try {
     const CompiledCode compiled = source.compiled(device, point.kernel, point.entry == Entry::outside);
@@ -104,14 +95,6 @@ Inspected::Count count_of(const json& object, const char* key)
     return static_cast<std::uint64_t>(std::max(0.0, found->get<double>()));
 }
 
-std::optional<double> number_of(const json& object, const char* key)
-{
-    const auto found = object.find(key);
-    if (found == object.end() || !found->is_number()) return std::nullopt;
-    return found->get<double>();
-}
-
-/// Statistics are called as Mesa 22.3 to 25 call them.
 void take_line(Inspected& row, const json& line)
 {
     if (line.contains("error")) {
@@ -123,18 +106,7 @@ void take_line(Inspected& row, const json& line)
     row.reason.clear();
     row.compiler = printable_line(line.at("compiler").get<std::string>());
     row.lanes = count_of(line, "lanes");
-    const json& told = line.at("statistics");
-    row.registers = count_of(told, "VGPRs");
-    row.scalar_registers = count_of(told, "SGPRs");
-    const auto vectors = count_of(told, "Spilled VGPRs"), scalars = count_of(told, "Spilled SGPRs");
-    if (vectors || scalars) row.spilled_registers = vectors.value_or(0) + scalars.value_or(0);
-    row.scratch_bytes = count_of(told, "Scratch size");
-    row.subgroups = count_of(told, "Subgroups per SIMD");
-    row.code_bytes = count_of(told, "Code size");
-    row.instructions = count_of(told, "Instructions");
-    row.branches = count_of(told, "Branches");
-    row.latency_cycles = number_of(told, "Latency");
-    row.cycles_a_subgroup = number_of(told, "Inverse Throughput");
+    take_statistics(row, line.at("statistics").get<std::map<std::string, double>>());
     const auto code = line.find("code");
     if (code == line.end()) return;
     row.loads = count_of(*code, "loads");
@@ -253,7 +225,7 @@ int run_null_hardware(const std::vector<std::string>& arguments)
         std::from_chars(arguments[i].data(), arguments[i].data() + arguments[i].size(), number);
         const EntryPoint& point = all.at(number);
         const json line =
-            compiled_json(*device.source, device.index, point, code.empty() ? code : code + code_name(point));
+            compiled_json(*device.source, device.index, point, code.empty() ? code : code + code_file_name(point));
         report << line.dump(-1, ' ', false, json::error_handler_t::replace) << std::endl;
         std::fprintf(stderr, "%s\n", compiled_word);
     }

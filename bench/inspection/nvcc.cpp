@@ -63,7 +63,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double max_kernel_s = 300; // of one kernel; the slowest take 10
-constexpr std::uint64_t persistent_block = 128;
 
 fs::path find_program(const char* name)
 {
@@ -103,13 +102,6 @@ std::string first_line(const std::string& text)
 std::string text_of(const fs::path& file)
 {
     return file_bytes(file).value_or("");
-}
-
-/// As kernel.cu calls it.
-std::string entry_name(const EntryPoint& point, const cuda::ProgramId& program)
-{
-    const std::string_view prefix = point.entry == Entry::outside ? "trace" : name_of(point.entry);
-    return fmt::format("{}_{}_{}", prefix, name_of(point.kernel.schedule), program.name());
 }
 
 /// What became of a kernel: the texts of its code and ptxas's words, or the reason why there are none.
@@ -162,7 +154,7 @@ void take(Inspected& row, const Compiled& compiled, const std::string& entry)
     unsigned capability = 0;
     std::from_chars(row.target.name.data() + 3, row.target.name.data() + row.target.name.size(), capability);
     const std::uint64_t block = row.point.kernel.schedule == Schedule::persistent
-                                    ? persistent_block
+                                    ? cuda::persistent_block_threads
                                     : std::uint64_t{TILE_WIDTH} * tile_height_of({});
     if (const auto warps =
             resident_warps(capability, *row.registers, block, block * stack_bytes_of_item(row.point.kernel.layout))) {
@@ -256,7 +248,7 @@ std::vector<Inspected> ask_nvcc(const Nvcc& nvcc, const Target& target, const st
         row.target = target;
         row.point = point;
         row.compiler = nvcc.version;
-        take(row, found->second, entry_name(point, program));
+        take(row, found->second, cuda::entry_name(point.kernel, point.entry == Entry::outside));
     }
     return rows;
 }

@@ -156,12 +156,15 @@ const VerbHelp verb_help[] = {
      "compilers report: registers, spills, scratch memory, subgroups per multiprocessor, instructions, branches, "
      "loads, and AMD's own estimate of cycles. Nothing is run. AMD's targets are compiled by Mesa's RADV on null "
      "hardware (package mesa-vulkan-drivers), NVIDIA's by nvcc and ptxas. A target without its compiler is 'skipped', "
-     "with the package to install.\n\n"
+     "with the package to install. With --backend or --device the drivers of this machine are asked what they make of "
+     "the kernels: Vulkan's by VK_KHR_pipeline_executable_properties, CUDA's and OpenCL's by what they report of a "
+     "function.\n\n"
      "In exact mode no fused operation may decide a sign. The code of each program is searched for one: AMD's machine "
      "code, NVIDIA's PTX. 'none' means that none was found; 'boxes' counts those in the box tests of BVHs, which "
      "decide nothing; 'DECISIONS' counts the forbidden ones, and prints the first. Exits with 1 if there is one. "
      "docs/inspect.md explains each column and its limits.",
      "  tetrace inspect\n"
+     "  tetrace inspect --backend cuda,vulkan --entry outside --schedule tiles\n"
      "  tetrace inspect --target gfx1100 --method all --out inspect.json\n"
      "  tetrace inspect --target sm_90 --method project --layout half32 --code code --require-target sm_90\n"},
     {Verb::trace, "follow one ray, step by step, on every device",

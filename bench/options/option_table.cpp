@@ -190,16 +190,17 @@ std::vector<OptionRow> row_options()
         {"Rows", "--backend", "NAME",
          "Keep the rows of this backend ('tetrace devices' lists them). A backend without a usable device has rows "
          "only if it is named here or by --require; they are skipped, with the reason. Default: all with a usable "
-         "device and a kernel of the structures kept.",
-         reproducing | bit(Verb::dump), true, append_backend("--backend", &Options::backends),
+         "device and a kernel of the structures kept. 'inspect' asks the drivers of its devices instead of the usual "
+         "targets' compilers.",
+         reproducing | bit(Verb::dump) | bit(Verb::inspect), true, append_backend("--backend", &Options::backends),
          usual_for(~bit(Verb::render), "API: {}")},
         {"Rows", "--device", "TEXT",
          "Keep the rows of the devices whose name, driver, type, id, number or driver's library contains TEXT, "
          "ignoring "
          "case, for example 'gpu', 'llvmpipe', 'vulkan:1' (the second device of vulkan) or '/opt/mesa/'. Exit code 3 "
          "if a TEXT matches "
-         "none. Default: all.",
-         reproducing | bit(Verb::dump), true, append_text(&Options::devices),
+         "none. Default: all. 'inspect' asks the drivers of these devices.",
+         reproducing | bit(Verb::dump) | bit(Verb::inspect), true, append_text(&Options::devices),
          usual_for(bit(Verb::dump), "devices whose name, type or number has this text")},
         {"Rows", "--task", "NAME",
          "What rows compute: 'trace', the hit of each ray; 'segments', every tet that each ray crosses, and the length "

@@ -92,6 +92,7 @@ Table device_table(const std::vector<ApiDevice>& devices)
                  {"max_group_items", "group"},
                  {"group_width", "lockstep"},
                  {"timer_period_s", "timer", "s", 9},
+                 {"reports_code", "reports code"},
                  {"self_test", "self-test"},
                  {"status", "status"},
                  {"reason", "reason"}});
@@ -114,6 +115,7 @@ Table device_table(const std::vector<ApiDevice>& devices)
                    count_cell(device.max_group_items),
                    count_cell(device.group_width),
                    device.timer_period_s > 0 ? Cell(device.timer_period_s) : Cell(),
+                   std::string(device.reports_code ? "yes" : "no"),
                    text_cell(found.self_test_text),
                    std::string(device.usable         ? "usable"
                                : device.compile_only ? "compile only"
@@ -156,6 +158,7 @@ std::string limits_text(const Device& device)
     if (device.max_group_items > 0) parts.push_back(fmt::format("groups of {}", with_commas(device.max_group_items)));
     if (device.group_width > 0) parts.push_back(fmt::format("{} in lockstep", device.group_width));
     if (device.timer_period_s > 0) parts.push_back(fmt::format("timer {:.3g} ns", 1e9 * device.timer_period_s));
+    if (device.reports_code) parts.emplace_back("reports its code to 'inspect'");
     return joined(parts);
 }
 

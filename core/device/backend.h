@@ -69,6 +69,7 @@ struct CompiledCode {
     unsigned lanes = 0;                       ///< of a subgroup
     std::map<std::string, double> statistics; ///< under the names that the compiler gives them
     std::string text;                         ///< the code, one instruction per line; empty if the driver shows none
+    std::string messages = {};                ///< of the compiler; ptxas's report with NVIDIA's OpenCL
 };
 
 /// A file for those who look into a kernel without this program.
@@ -120,6 +121,7 @@ struct Device {
     bool compile_only = false; ///< not usable, but its driver compiles for it: hardware that is not here
     bool broken = false;       ///< not usable because its driver failed: its rows are errors, and not skipped
     std::string reason;        ///< why not, where not usable
+    bool reports_code = false; ///< its driver reports what it made of a kernel: Backend::compiled()
 };
 
 /// What a session works on; the caller keeps it alive. `packed` is null for kernels that are not portable, which build
@@ -287,11 +289,12 @@ public:
     }
     /// The launch of the reduced kernel of that name (core/device/defects.h). Empty if there is no host for the API.
     [[nodiscard]] virtual std::optional<LaunchCase> defect_case(std::string_view) const { return std::nullopt; }
-    /// Whether compiled() shows what the API's compilers make of our kernels.
+    /// Whether compiled() shows the code itself, of drivers that do.
     [[nodiscard]] virtual bool shows_code() const { return false; }
-    /// The device need not be usable: compile_only is enough. kernel: without one, an empty kernel is compiled.
-    /// starts_outside: of task trace, no ray starts in a tet. Throws Error{unsupported} if the driver shows nothing of
-    /// its code, Error{driver} if it fails.
+    /// What the device's driver made of a kernel, as sessions compile it for a GPU. The device need not be usable:
+    /// compile_only is enough. kernel: without one, a kernel that needs next to no registers is compiled.
+    /// starts_outside: of task trace, no ray starts in a tet. Throws Error{unsupported} if the driver reports nothing
+    /// of its code, Error{missing} if the device cannot be used, Error{driver} if it fails.
     [[nodiscard]] virtual CompiledCode compiled(std::size_t device, const std::optional<KernelId>& kernel,
                                                 bool starts_outside) const;
     /// Whether run_defect() runs the reduced kernels of core/device/defects.h.

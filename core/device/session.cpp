@@ -50,7 +50,7 @@ TraceJob column_of(std::size_t rays)
 
 CompiledCode Backend::compiled(std::size_t, const std::optional<KernelId>&, bool) const
 {
-    throw Error(ErrorKind::unsupported, name() + " shows nothing of its code");
+    throw Error(ErrorKind::unsupported, name() + " reports nothing of its code");
 }
 
 std::vector<std::uint32_t> Backend::run_defect(std::size_t, std::string_view)

@@ -33,7 +33,7 @@ public:
             ByteReader request(std::move(message.bytes));
             const auto what = request.get<Request>();
             if (what < Request::open)
-                answer_backend(answer, what, request);
+                answer_backend(answer, what, request, std::move(message.file));
             else if (what == Request::open)
                 open(answer, request, std::move(message.file));
             else
@@ -51,7 +51,7 @@ private:
         std::unique_ptr<Session> session;
     };
 
-    void answer_backend(ByteWriter& answer, Request what, ByteReader& request)
+    void answer_backend(ByteWriter& answer, Request what, ByteReader& request, Descriptor file)
     {
         if (what == Request::devices) return put_devices(answer, backend_->devices());
         const auto device = request.get<std::uint64_t>();
@@ -64,6 +64,13 @@ private:
         } else if (what == Request::run_defect) {
             const auto words = backend_->run_defect(device, request.get_text());
             answer.put_all(std::span<const std::uint32_t>(words));
+        } else if (what == Request::compiled) {
+            const auto has_kernel = request.get<bool>();
+            const auto kernel = request.get<KernelId>();
+            const auto starts_outside = request.get<bool>();
+            const auto code =
+                backend_->compiled(device, has_kernel ? std::optional(kernel) : std::nullopt, starts_outside);
+            put_code(answer, code, SharedMemory(std::move(file), max_code_bytes));
         } else {
             const auto yardstick = backend_->yardstick(device, get_options(request));
             answer.put(yardstick.has_value());

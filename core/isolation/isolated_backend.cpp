@@ -198,7 +198,8 @@ std::vector<Device> IsolatedBackend::list(DriverChild& child) const
 std::shared_ptr<DriverChild> IsolatedBackend::child_of(std::size_t device) const
 {
     const Device& wanted = devices().at(device);
-    if (!wanted.usable) throw Error(wanted.broken ? ErrorKind::driver : ErrorKind::missing, wanted.reason);
+    if (!wanted.usable && !wanted.compile_only)
+        throw Error(wanted.broken ? ErrorKind::driver : ErrorKind::missing, wanted.reason);
     std::shared_ptr<DriverChild>& child = children_[device];
     if (child == nullptr || child->is_lost()) child = start(device);
     return child;
@@ -261,6 +262,21 @@ std::vector<std::uint32_t> IsolatedBackend::run_defect(std::size_t device, std::
     return child_of(device)
         ->call({"running the reduced kernel " + std::string(name), request, -1, call_limit_s(0)})
         .get_all<std::uint32_t>();
+}
+
+CompiledCode IsolatedBackend::compiled(std::size_t device, const std::optional<KernelId>& kernel,
+                                       bool starts_outside) const
+{
+    ByteWriter request;
+    request.put(Request::compiled);
+    request.put(std::uint64_t{device});
+    request.put(kernel.has_value());
+    request.put(kernel.value_or(KernelId{}));
+    request.put(starts_outside);
+    const std::string what = kernel ? name_of(*kernel) : "an empty kernel";
+    const SharedMemory text(max_code_bytes);
+    ByteReader answer = child_of(device)->call({"compiling " + what, request, text.file(), call_limit_s(0)});
+    return get_code(answer, text);
 }
 
 std::optional<Yardstick> IsolatedBackend::yardstick(std::size_t device, const SessionOptions& options)

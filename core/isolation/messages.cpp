@@ -18,9 +18,11 @@ template <class Visit>
 void each_text(Device& device, const Visit& visit)
 {
     auto& [name, kind, driver, implementation, id, uuid, pci, library, memory_bytes, max_buffer_bytes, max_group_items,
-           group_width, max_steps, timer_period_s, threads, usable, compile_only, broken, reason] = device;
+           group_width, max_steps, timer_period_s, threads, usable, compile_only, broken, reason, reports_code] =
+        device;
     static_cast<void>(std::tie(kind, memory_bytes, max_buffer_bytes, max_group_items, group_width, max_steps,
-                               timer_period_s, threads, usable, compile_only, broken)); // see each_number()
+                               timer_period_s, threads, usable, compile_only, broken,
+                               reports_code)); // see each_number()
     for (std::string* text : {&name, &driver, &implementation, &id, &uuid, &pci, &library, &reason})
         visit(*text);
 }
@@ -39,6 +41,7 @@ void each_number(Device& device, const Visit& visit)
     visit(device.usable);
     visit(device.compile_only);
     visit(device.broken);
+    visit(device.reports_code);
 }
 
 /// The arrays of a packed scene that a device gets; all members by name, for the same reason.
@@ -130,6 +133,39 @@ std::vector<Device> get_devices(ByteReader& from)
                         "a message from a driver's process is damaged: its kind of device is unknown");
     }
     return devices;
+}
+
+void put_code(ByteWriter& to, const CompiledCode& code, const SharedMemory& text)
+{
+    if (code.text.size() > text.bytes().size())
+        throw Error(ErrorKind::unsupported, "the code has " + std::to_string(code.text.size()) +
+                                                " bytes of text, at most " + std::to_string(text.bytes().size()) +
+                                                " are possible");
+    to.put_text(code.compiler);
+    to.put(code.lanes);
+    to.put(std::uint64_t{code.statistics.size()});
+    for (const auto& [name, value] : code.statistics) {
+        to.put_text(name);
+        to.put(value);
+    }
+    std::ranges::copy(std::as_bytes(std::span(code.text)), text.bytes().begin());
+    to.put(std::uint64_t{code.text.size()});
+    to.put_text(code.messages);
+}
+
+CompiledCode get_code(ByteReader& from, const SharedMemory& text)
+{
+    CompiledCode code;
+    code.compiler = from.get_text();
+    code.lanes = from.get<unsigned>();
+    for (auto left = from.get<std::uint64_t>(); left > 0; --left) {
+        const std::string name = from.get_text();
+        code.statistics[name] = from.get<double>();
+    }
+    const auto length = std::min<std::uint64_t>(from.get<std::uint64_t>(), text.bytes().size());
+    code.text.assign(reinterpret_cast<const char*>(text.bytes().data()), length);
+    code.messages = from.get_text();
+    return code;
 }
 
 void put_options(ByteWriter& to, const SessionOptions& options)

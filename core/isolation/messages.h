@@ -109,6 +109,7 @@ enum class Request : std::uint32_t {
     probe,
     yardstick,
     run_defect,
+    compiled,
     open,
     set_rays,
     launch,
@@ -120,6 +121,12 @@ enum class Request : std::uint32_t {
 
 void put_devices(ByteWriter& to, const std::vector<Device>& devices);
 [[nodiscard]] std::vector<Device> get_devices(ByteReader& from);
+
+/// The code's text, which is too long for a message, goes to memory that both processes see.
+inline constexpr std::size_t max_code_bytes = std::size_t{16} << 20;
+/// Throws Error{unsupported} with both numbers if the memory is too small.
+void put_code(ByteWriter& to, const CompiledCode& code, const SharedMemory& text);
+[[nodiscard]] CompiledCode get_code(ByteReader& from, const SharedMemory& text);
 
 void put_options(ByteWriter& to, const SessionOptions& options);
 [[nodiscard]] SessionOptions get_options(ByteReader& from);

@@ -3,6 +3,7 @@
 // run. device_test.cpp and the other tests of each_device.h have what is claimed of every API.
 #include "backends/cuda/driver_backend.h"
 #include "backends/cuda_host/backend.h"
+#include "backends/cuda_host/driver.h"
 #include "core/device/scene_buffers.h"
 #include "core/device/self_test.h"
 #include "tests/support/device_rays.h"
@@ -157,6 +158,49 @@ TEST_P(CudaWithoutGpu, contracts_in_fast_mode)
 
 INSTANTIATE_TEST_SUITE_P(each, CudaWithoutGpu, ::testing::Values("host", "stub"),
                          [](const auto& driver) { return std::string(driver.param); });
+
+TEST(CudaDriver, says_what_it_made_of_a_kernel_and_how_many_of_its_warps_fit)
+{
+    auto loaded = cuda::load_driver(TETRACE_STUB_CUDA);
+    ASSERT_TRUE(loaded.usable()) << loaded.reason;
+    loaded.driver.function_attribute = [](int* value, int attribute, cuda::FunctionHandle) -> cuda::Result {
+        *value = 10 * attribute;
+        return attribute < 7 ? cuda::success : cuda::error_invalid_value;
+    };
+    loaded.driver.blocks_per_multiprocessor = [](int* blocks, cuda::FunctionHandle, int threads, std::size_t shared) {
+        *blocks = shared == 0 ? 1024 / threads : 3; // shared memory: the stacks of BVHs
+        return cuda::success;
+    };
+    loaded.driver.device_attribute = [](int* value, int attribute, cuda::Ordinal device) -> cuda::Result {
+        *value = attribute == 39 ? 2048 : 32; // threads of a multiprocessor and of a warp; the host's warps have one
+        return attribute == 39 || attribute == cuda::attribute_warp_size
+                   ? cuda::success
+                   : cuda_host::emulated_driver().device_attribute(value, attribute, device);
+    };
+    const cuda::DriverBackend backend({"cuda", "CUDA events", [&] { return loaded; }, cuda::embedded_programs});
+    if (!backend.devices()[0].usable) GTEST_SKIP() << backend.devices()[0].reason;
+    const auto compiled = [&](Layout layout, Method method, Schedule schedule) {
+        const KernelId kernel{
+            .structure = structure_of(layout), .method = method, .layout = layout, .schedule = schedule};
+        return backend.compiled(0, kernel, true).statistics;
+    };
+    const auto walk = compiled(Layout::tet80, Method::maria, Schedule::tiles);
+    EXPECT_EQ(walk.at("NUM_REGS"), 40);
+    EXPECT_EQ(walk.at("LOCAL_SIZE_BYTES"), 30);
+    EXPECT_FALSE(walk.contains("CACHE_MODE_CA")) << "the driver does not know it";
+    EXPECT_EQ(walk.at("blocks per multiprocessor"), 16);
+    EXPECT_EQ(walk.at("warps per multiprocessor"), 32);
+    EXPECT_EQ(walk.at("max warps per multiprocessor"), 64);
+    EXPECT_EQ(compiled(Layout::tet80, Method::maria, Schedule::persistent).at("blocks per multiprocessor"), 8);
+    EXPECT_EQ(compiled(Layout::bvh2, Method::single, Schedule::tiles).at("warps per multiprocessor"), 6);
+}
+
+TEST(CudaDriver, that_reports_nothing_of_its_code_is_unsupported)
+{
+    const auto& host = cuda_host_backend();
+    EXPECT_FALSE(host.devices()[0].reports_code);
+    EXPECT_TRUE(contains(error_of([&] { (void)host.compiled(0, KernelId{}, true); }), "does not report its code"));
+}
 
 TEST(CudaDriver, that_is_not_there_is_a_device_that_says_so)
 {

@@ -292,6 +292,53 @@ TEST_F(Inspect, the_code_is_kept_where_it_is_asked_for)
     EXPECT_NE(file("code/gfx1100-maria-tet80-exact-outside.s").find("s_endpgm"), std::string::npos);
 }
 
+TEST_F(Inspect, a_driver_of_this_machine_says_the_same_as_it_does_as_a_target)
+{
+    for (const char* const narrower : {"VK_DRIVER_FILES", "VK_ICD_FILENAMES"}) // RADV may not be among those
+        ::unsetenv(narrower);
+    ::setenv("RADV_FORCE_FAMILY", "navi21", 1);
+    const json programs = inspected("--target navi21 --backend vulkan --device navi21 --method maria --layout tet80 "
+                                    "--entry outside --code code");
+    ::unsetenv("RADV_FORCE_FAMILY");
+    if (programs.empty()) GTEST_SKIP() << "no RADV here; install mesa-vulkan-drivers";
+    ASSERT_EQ(programs.size(), 2u) << programs;
+    const json &target = programs[0], &driver = programs[1];
+    ASSERT_EQ(driver["status"], "ok") << driver;
+    EXPECT_TRUE(driver["target"].get<std::string>().starts_with("vulkan")) << driver;
+    EXPECT_GT(count(driver, "registers"), 0u);
+    for (const char* const key : {"registers", "spilled_registers", "scratch_bytes", "subgroups", "most_subgroups",
+                                  "code_bytes", "instructions", "lanes", "compiler"})
+        EXPECT_EQ(driver.value(key, json()), target.value(key, json())) << key;
+    EXPECT_EQ(driver["statistics"]["VGPRs"], driver["registers"]);
+    EXPECT_FALSE(driver.contains("fused")) << "its code is not searched";
+    const std::string name = driver["target"].get<std::string>() + "-maria-tet80-exact-outside.s";
+    EXPECT_NE(file(("code/" + name).c_str()).find("s_endpgm"), std::string::npos);
+}
+
+TEST_F(Inspect, a_driver_that_reports_nothing_is_skipped_with_the_reason)
+{
+    const Ended openmp = run("inspect --backend openmp --method maria --layout tet80");
+    EXPECT_EQ(openmp.code, 3) << openmp.errors;
+    EXPECT_NE(openmp.out.find("skipped: openmp: openmp reports nothing of its code"), std::string::npos) << openmp.out;
+    const Ended host = run("inspect --backend cuda-host --method maria --layout tet80");
+    EXPECT_EQ(host.code, 3) << host.errors;
+    EXPECT_NE(host.out.find("does not report its code"), std::string::npos) << host.out;
+    const Ended nobody = run("inspect --device no-such-device");
+    EXPECT_EQ(nobody.code, 3);
+    EXPECT_NE(nobody.errors.find("--device: no device has no-such-device"), std::string::npos) << nobody.errors;
+    EXPECT_EQ(run("inspect --backend no-such-backend").code, 2);
+}
+
+TEST_F(Inspect, opencl_says_what_it_knows_of_a_kernel)
+{
+    const json programs = inspected("--backend opencl --method maria --layout tet80 --schedule tiles --entry outside");
+    if (programs.empty() || programs.front()["status"] == "skipped") GTEST_SKIP() << "no OpenCL device here";
+    for (const json& program : programs) {
+        EXPECT_EQ(program["status"], "ok") << program;
+        EXPECT_GT(program["statistics"]["WORK_GROUP_SIZE"], 0) << program;
+    }
+}
+
 TEST_F(Inspect, null_hardware_is_compile_only_and_nothing_is_run_on_it)
 {
     for (const char* const narrower : {"VK_DRIVER_FILES", "VK_ICD_FILENAMES"}) // RADV may not be among those
