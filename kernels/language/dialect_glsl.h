@@ -2,7 +2,6 @@
 // Macros from outside: MATH_FAST where the compiler may contract; SELECTS_MINIMA, an expression, true where comparing
 // and selecting is faster than the built-in minimum (the two differ only for NaNs, which never occur); STACK_TOP, a
 // constant, GROUP_ITEMS, the invocations of a work group, and STACK_ENTRIES: see kernels/stack.h.
-#extension GL_EXT_control_flow_attributes : require
 #include "kernels/layouts/layout.h"
 
 #ifndef SELECTS_MINIMA
@@ -11,7 +10,7 @@
 #define KERNEL_FN
 #define RARE_FN
 #define MAYBE_UNUSED
-#define KEEP_LOOP [[dont_unroll]]
+#define KEEP_LOOP [[dont_unroll]] // for which the entry file asks for an extension
 #define STRUCT(name) struct name
 #define VEC3(x, y, z) Vec3(x, y, z)
 // An item's words are GROUP_ITEMS apart, so that its neighbours' are in other banks. An array has one word at least.
