@@ -18,9 +18,10 @@ template <class Visit>
 void each_text(Device& device, const Visit& visit)
 {
     auto& [name, kind, driver, implementation, id, uuid, pci, library, memory_bytes, max_buffer_bytes, max_group_items,
-           group_width, max_steps, timer_period_s, threads, usable, compile_only, broken, reason] = device;
+           group_width, max_steps, timer_period_s, threads, usable, compile_only, broken, reason, cache_bytes] = device;
     static_cast<void>(std::tie(kind, memory_bytes, max_buffer_bytes, max_group_items, group_width, max_steps,
-                               timer_period_s, threads, usable, compile_only, broken)); // see each_number()
+                               timer_period_s, threads, usable, compile_only, broken,
+                               cache_bytes)); // see each_number()
     for (std::string* text : {&name, &driver, &implementation, &id, &uuid, &pci, &library, &reason})
         visit(*text);
 }
@@ -39,6 +40,7 @@ void each_number(Device& device, const Visit& visit)
     visit(device.usable);
     visit(device.compile_only);
     visit(device.broken);
+    visit(device.cache_bytes);
 }
 
 /// The arrays of a packed scene that a device gets; all members by name, for the same reason.
