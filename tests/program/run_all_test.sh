@@ -54,7 +54,7 @@ the_time_of_all_steps_shortens_later_ones_and_then_skips_them)
     tetrace_is 'case "$1 $*" in "bench "*/bench.json*) exec sleep 1000 ;; esac; echo "it ran: $*"'
     run_all 1 "$out" --quick --limit-all 12
     summary_has '^check +ok '
-    grep -Eq '^bench +timed out after [0-9]+ s [(]of 150 s[)]' "$out/summary.txt" || fail "bench was not shortened"
+    grep -Eq '^bench +timed out after [0-9]+ s [(]of 75 s[)]' "$out/summary.txt" || fail "bench was not shortened"
     summary_has '^reproduce +skipped at --limit-all '
     summary_has '^1 steps failed, [0-9]+ skipped, 1[0-9] s in all'
     tetrace_is 'echo "it ran: $*"'

@@ -1,7 +1,5 @@
-#include "bench/measuring/lone_rays.h"
 #include "tests/reproduce/reproduce_fixture.h"
 
-using namespace tetrace;
 using namespace tetrace::test;
 
 namespace {
@@ -11,18 +9,6 @@ class LadderRun : public ReproduceTest {};
 const std::string lattices = "ladder --scene lattice:6,lattice:12 --size 48 --samples 5 --backend openmp,cuda-host ";
 
 } // namespace
-
-TEST(LoneRays, a_step_costs_the_slope_whatever_a_launch_costs_and_some_launches_were_disturbed)
-{
-    std::vector<LoneLaunch> launches;
-    for (int i = 0; i < 64; ++i)
-        launches.push_back({static_cast<double>(i), 5e-6 + 3e-9 * i + (i % 9 == 4 ? 1e-3 : 0)});
-    const auto slope = slope_of(launches);
-    ASSERT_TRUE(slope);
-    EXPECT_NEAR(*slope, 3e-9, 3e-10);
-    EXPECT_FALSE(slope_of({{4, 1e-6}, {4, 2e-6}})) << "all launches have equal steps";
-    EXPECT_FALSE(slope_of({}));
-}
 
 TEST_F(LadderRun, every_row_has_its_size_its_steps_and_both_costs_and_they_are_printed)
 {
