@@ -25,14 +25,14 @@ bool counts_nodes(const RowRecord& row)
     return row.key.kernel.structure == Structure::bvh;
 }
 
-/// A median that is not positive is below the noise: there is no such cost.
+/// Empty if the median, or the low end of its interval, is not positive: it is below the noise.
 std::optional<Estimate> ns_of(std::vector<double> seconds, double steps)
 {
     if (seconds.empty() || steps <= 0) return std::nullopt;
     for (double& value : seconds)
         value *= ns_per_s / steps;
     const Estimate ns = median_of_views(seconds);
-    return ns.value > 0 ? std::optional(ns) : std::nullopt;
+    return std::min(ns.value, ns.low.value_or(ns.value)) > 0 ? std::optional(ns) : std::nullopt;
 }
 
 /// A row with its two costs, where it has them.
@@ -82,10 +82,8 @@ std::vector<std::string> ladder_notes()
     return {"A step is a tet left, or a node of a BVH visited. Random rays from outside the domain. A ray alone: the "
             "slope of time over steps of launches of one ray each, right after all rays have been through the caches; "
             "on openmp a thread traces 32 such rays, one after the other. In the full device: the time of all rays "
-            "over their steps. Alone over full: how many steps the device has in flight at a time, or more: the time "
-            "of all rays includes how they enter and "
-            "end. All hits are "
-            "verified."};
+            "over their steps, with how they enter and end. Alone over full: at least as many steps the device "
+            "has in flight at a time. All hits are verified."};
 }
 
 void add_points(PaperFigure& figure, const std::vector<Rung>& rungs, const std::string& name,
