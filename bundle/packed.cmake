@@ -11,13 +11,13 @@ function(pack file name options folder)
   configure_file(${kept} ${folder}/${name}.xz COPYONLY)
 endfunction()
 
-# pack_scenes(<names> <folder> <variable>): builds each scene, or takes it from the cache, and packs it: with tets for
-# rays as <folder>/<name>-rays.tet.xz, with TetGen's, which the paper's numbers need, as <folder>/<name>.tet.xz. The
-# variable gets the names of those that could be had.
-function(pack_scenes names folder variable)
+# pack_scenes(<names> <kinds> <folder> <variable>): builds each scene, or takes it from the cache, and packs it: of kind
+# rays, with tets for rays, as <folder>/<name>-rays.tet.xz; of kind cdt, with TetGen's, which the paper's numbers need,
+# as <folder>/<name>.tet.xz. The variable gets the names of those that could be had.
+function(pack_scenes names kinds folder variable)
   set(packed "")
   foreach(name IN LISTS names)
-    foreach(tets cdt rays)
+    foreach(tets IN LISTS kinds)
       set(title ${name})
       if(tets STREQUAL rays)
         set(title ${name}-rays)

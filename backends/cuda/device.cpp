@@ -80,6 +80,7 @@ Device describe(const Driver& driver, Ordinal ordinal)
     device.max_group_items = static_cast<unsigned>(attribute_of(driver, ordinal, attribute_block_threads));
     device.group_width = static_cast<unsigned>(attribute_of(driver, ordinal, attribute_warp_size));
     device.threads = static_cast<unsigned>(attribute_of(driver, ordinal, attribute_multiprocessors));
+    device.cache_bytes = static_cast<std::uint64_t>(attribute_of(driver, ordinal, attribute_l2_bytes));
     return device;
 }
 

@@ -30,6 +30,7 @@ constexpr Result error_not_supported = 801;
 constexpr int attribute_block_threads = 1;
 constexpr int attribute_warp_size = 10;
 constexpr int attribute_multiprocessors = 16;
+constexpr int attribute_l2_bytes = 38;
 constexpr int attribute_capability_major = 75;
 constexpr int attribute_capability_minor = 76;
 

@@ -114,6 +114,7 @@ void describe(const cl::Platform& platform, FoundDevice& found)
     facts.library = library_of(platform);
     facts.id = id_of(facts);
     facts.memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+    facts.cache_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_CACHE_SIZE>();
     facts.max_buffer_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
     const auto sizes = device.getInfo<CL_DEVICE_MAX_WORK_ITEM_SIZES>();
     const std::size_t group_items =

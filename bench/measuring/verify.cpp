@@ -305,26 +305,30 @@ bool is_answer_of(const Hit& counted, const Hit& hit)
     return counted.face_id == hit.face_id && counted.t == hit.t && counted.u == hit.u && counted.v == hit.v;
 }
 
-openmp::RunFunction* counting_function(const RowKey& key)
+/// Openmp's hits of the row's rays with visits in place of tet and steps; empty if nothing counts them.
+std::vector<std::uint32_t> counted_output(const RowRun& row, std::size_t view, unsigned threads)
 {
-    return on_reference(key) ? openmp::find_function(openmp::counting_kernels(), key.kernel) : nullptr;
-}
-
-/// Visits in place of tet and steps; empty if nothing counts them.
-std::vector<std::uint32_t> counted_output(const RowRun& row, std::size_t view, std::span<const Hit> hits,
-                                          unsigned threads)
-{
-    openmp::RunFunction* const count = counting_function(row.key);
+    openmp::RunFunction* const count = openmp::find_function(openmp::counting_kernels(), row.key.kernel);
     if (count == nullptr) return {};
     SceneWork& scene = *row.scene;
     const PackedScene& packed = row.packed->data;
-    std::vector<std::uint32_t> output(hits.size() * HIT_WORDS, POISON);
+    std::vector<std::uint32_t> output(ray_count(row, view) * HIT_WORDS, POISON);
     const auto rays = row.key.kernel.task == Task::rays
                           ? std::span<const Quad>(scene.given_rays().rows(scene, row.key, &packed, view))
                           : std::span<const Quad>();
     const TraceJob job = job_of(row, view);
     on_team(threads, 1, 1,
             [&](std::size_t, SharedTiles& tiles) { count(packed, rays, job, output, tiles, tile_height); });
+    return output;
+}
+
+/// The same of a row of openmp, whose hits these are; empty for others.
+std::vector<std::uint32_t> counted_output(const RowRun& row, std::size_t view, std::span<const Hit> hits,
+                                          unsigned threads)
+{
+    if (!on_reference(row.key)) return {};
+    auto output = counted_output(row, view, threads);
+    if (output.empty()) return {};
     const std::span<const Hit> counted = as_hits(output);
     for (std::size_t ray = 0; ray < hits.size(); ++ray)
         if (!is_answer_of(counted[ray], hits[ray]))
@@ -355,6 +359,16 @@ Visits count_visits_of_ray(const RowRun& row, std::size_t view, std::span<const 
     if (output.empty()) return {};
     const Hit& counted = as_hits(output)[ray];
     return {1, counted.tet, counted.steps};
+}
+
+std::vector<Visits> visits_by_ray(const RowRun& row, std::size_t view, unsigned threads)
+{
+    auto output = counted_output(row, view, threads);
+    std::vector<Visits> visits;
+    if (output.empty()) return visits;
+    for (const Hit& counted : as_hits(output))
+        visits.push_back({1, counted.tet, counted.steps});
+    return visits;
 }
 
 } // namespace tetrace

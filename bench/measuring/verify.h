@@ -58,4 +58,8 @@ private:
 [[nodiscard]] Visits count_visits_of_ray(const RowRun& row, std::size_t view, std::span<const Hit> hits,
                                          std::size_t ray, unsigned threads);
 
+/// Of each ray of a view, as openmp traces it through a row's BVH, on whatever device the row is. Empty for rows of
+/// other structures and of Embree.
+[[nodiscard]] std::vector<Visits> visits_by_ray(const RowRun& row, std::size_t view, unsigned threads);
+
 } // namespace tetrace

@@ -134,6 +134,10 @@ const VerbHelp verb_help[] = {
      "over scenes that suit tets and scenes that do not. It is run by itself and measures as 'bench' does: all views "
      "together, with --samples, --sample-time and --budget as there. Default scenes: bunny, armadillo, atrium, city, "
      "terrain, spheres and grass, if available. 'tetrace show FILE.json --out page.md' writes the page again.\n\n"
+     "ladder: what a step costs, as a scene outgrows one cache after the other (docs/ladder.md): nanoseconds per step "
+     "of a ray alone, and of a full device, for random rays through lattices of 1 MB to 4 GB, with a figure per "
+     "device. It is run by itself and measures as 'bench' does. Scenes that memory or --budget has no room for are "
+     "left out, with the reason.\n\n"
      "figure6: time over tets traversed, one point per view, their correlation, and pictures of the two extreme "
      "views.\n\n"
      "Timing: each view, and each batch of searches, has a launch of its own, as in the paper's frames per second. "
@@ -150,6 +154,7 @@ const VerbHelp verb_help[] = {
      "  tetrace reproduce table6 --scene bunny --views 0-1281:20 --backend openmp,embree\n"
      "  tetrace reproduce table5 --searches 1000x16384 --backend openmp,cuda\n"
      "  tetrace reproduce rivals --out rivals.json    15 minutes on two cores; with --scene bunny, 3\n"
+     "  tetrace reproduce ladder --size 1024 --out ladder.json\n"
      "  tetrace reproduce --backend openmp --layout tet80 --out all.json --resume\n"},
     {Verb::inspect, "show what real GPU compilers make of the kernels",
      "Compiles every entry point of the selected kernels for GPUs that need not be here, and prints what the "

@@ -258,8 +258,8 @@ std::vector<OptionRow> ray_options()
              scene_names([](const CatalogueEntry& scene) { return !scene.views.empty(); }) +
              "; 'smoke', 4 views at 2 radii, in which a closed object fills a sixth of the "
              "image; 'orbit', 1,282 views on a sphere of 2 radii; 'flight', 1,282 views from 1.2 to 2.9 radii; or a "
-             ".json file with your own cameras (docs/cameras.md). Default: frame; for 'reproduce', except for rivals, "
-             "flight.",
+             ".json file with your own cameras (docs/cameras.md). Default: frame; for 'reproduce', except for rivals "
+             "and ladder, flight.",
          with_rays, false, set_cameras(), usual_for(~(sharing | bit(Verb::dump)), "views: {}, or a .json file")},
         {"Rays", "--views", "LIST",
          "Views of the camera set, numbered from 0: numbers, ranges and strides, for example 0,3,10-20 or "
@@ -270,7 +270,7 @@ std::vector<OptionRow> ray_options()
         {"Rays", "--size", "WxH",
          "Image size in pixels, one ray each; N means NxN. 'bench' accepts a list, for example 256,512,1024, and "
          "measures each row at each size. Default: 1024x1024; for 'check', 'trace' and 'dump' 256x256, for 'reproduce "
-         "rivals' 512x512.",
+         "rivals' and 'ladder' 512x512.",
          with_rays, true,
          [](Options& o, const std::string& v) {
              std::tie(o.width, o.height) = parse_size("--size", v);
@@ -329,7 +329,7 @@ std::vector<OptionRow> judging_options()
          "repeatedly for --sample-time. Of 'reproduce' for each row and view, or batch of searches. Fewer than 5 give "
          "no interval, here and in 'compare'. Default: 10, and up to three times as many for rows that are noisy, "
          "while --budget "
-         "lasts (not with --runs, nor with Google Benchmark's output); of 'reproduce' 5, except for rivals.",
+         "lasts (not with --runs, nor with Google Benchmark's output); of 'reproduce' 5, except for rivals and ladder.",
          bit(Verb::bench) | bit(Verb::reproduce), false,
          [](Options& o, const std::string& v) {
              set_count("--samples", &Options::samples, 3, 10000)(o, v);
@@ -346,7 +346,7 @@ std::vector<OptionRow> judging_options()
          "followed by s, up to a minute. A GPU traces all views in less than a millisecond, too short for its "
          "clocks to settle. Passes follow each other without the host, and rates are per pass. 0: a sample is one "
          "pass. Default: 0.1; of 'reproduce', which takes samples of each of up to 1,282 views, 0.005, except for "
-         "rivals.",
+         "rivals and ladder.",
          bit(Verb::bench) | bit(Verb::reproduce), false,
          [](Options& o, const std::string& v) { o.sample_s = parse_sample_time(v); }},
         {"Measuring", "--budget", "TIME",
@@ -357,7 +357,7 @@ std::vector<OptionRow> judging_options()
          "result states the budget that the skipped rows need. With --repeat, each repetition has it. One row is "
          "always measured, however small TIME is; "
          "otherwise a run exceeds the budget by at most a quarter. --benchmark_repetitions lifts the limit. "
-         "Default: 4m; of 'check' and 'reproduce' no limit, but of rivals 10m.",
+         "Default: 4m; of 'check' and 'reproduce' no limit, but of rivals 10m, of ladder 5m.",
          sharing, false, set_seconds("--budget", &Options::budget_s),
          usual_for(bit(Verb::bench) | bit(Verb::reproduce), "time for verifying and timing: 30s, 10m")},
         {"Judging", "--require", "BACKEND",

@@ -192,23 +192,31 @@ void check_together(const Options& options)
     if (options.verb == Verb::dump) check_dump(options);
 }
 
-/// `reproduce rivals` is a run of `bench` over given rows; the other tables are of views one after the other.
+/// `reproduce rivals` and `ladder` are runs of `bench` over given rows; the other tables are of views one after the
+/// other. The ladder's rays are random and do not depend on cameras.
 constexpr std::string_view only_of_rivals[] = {"--runs"};
-constexpr std::string_view not_of_rivals[] = {"--builds", "--searches", "--shard", "--wait"};
+constexpr std::string_view not_of_bench_runs[] = {"--builds", "--searches", "--shard", "--wait"};
+constexpr std::string_view not_of_ladder[] = {"--resume", "--camera-set", "--views"};
 
-void check_rivals(const Options& options, const CLI::App& app)
+void check_bench_runs(const Options& options, const CLI::App& app)
 {
-    const bool is_rivals = std::ranges::find(options.targets, PaperTarget::rivals) != options.targets.end();
-    if (is_rivals && options.targets.size() > 1)
-        throw Error(ErrorKind::usage, "reproduce: rivals cannot be combined with other tables; run it by itself");
-    const auto reject = [&](std::string_view name, const char* what) {
-        if (app.get_option(std::string(name))->count() > 0)
-            throw Error(ErrorKind::usage, fmt::format("{} {}", name, what));
+    const auto target = std::ranges::find_if(options.targets, is_bench_run);
+    const bool is_any = target != options.targets.end();
+    const std::string name(is_any ? name_of(*target) : "");
+    if (is_any && options.targets.size() > 1)
+        throw Error(ErrorKind::usage,
+                    fmt::format("reproduce: {} cannot be combined with other tables; run it by itself", name));
+    const auto reject = [&](std::span<const std::string_view> options_of_others, const std::string& what) {
+        for (const std::string_view option : options_of_others)
+            if (app.get_option(std::string(option))->count() > 0)
+                throw Error(ErrorKind::usage, fmt::format("{} {}", option, what));
     };
-    for (const std::string_view name : only_of_rivals)
-        if (!is_rivals) reject(name, "is for 'reproduce rivals'; the other tables are measured view by view");
-    for (const std::string_view name : not_of_rivals)
-        if (is_rivals) reject(name, "is not for 'reproduce rivals', which is one run of one process");
+    if (!is_any || *target != PaperTarget::rivals)
+        reject(only_of_rivals, "is for 'reproduce rivals'; the other tables are measured once");
+    if (is_any)
+        reject(not_of_bench_runs, fmt::format("is not for 'reproduce {}', which is one run of one process", name));
+    if (is_any && *target == PaperTarget::ladder)
+        reject(not_of_ladder, "is not for 'reproduce ladder', which is short and traces random rays");
 }
 
 /// A verb's defaults.
@@ -245,11 +253,11 @@ void check_workload(Verb verb, const CLI::App& app)
                 fmt::format("{}: --workload decides it, so that results compare; leave one of them out", row.name));
 }
 
-bool asks_for_rivals(Verb verb, const CLI::App& app)
+bool asks_for(PaperTarget target, Verb verb, const CLI::App& app)
 {
     if (verb != Verb::reproduce) return false;
     const auto& tables = app.get_option("TABLE")->results();
-    return std::ranges::find(tables, name_of(PaperTarget::rivals)) != tables.end();
+    return std::ranges::find(tables, name_of(target)) != tables.end();
 }
 
 /// Those of `bench`, but for more rows in as many minutes.
@@ -259,6 +267,16 @@ Options defaults_of_rivals()
     options.verb = Verb::reproduce;
     options.width = options.height = 512;
     options.budget_s = 600;
+    return options;
+}
+
+/// The same, for one view: random rays of the next ones would be alike.
+Options defaults_of_ladder()
+{
+    Options options = defaults_of_rivals();
+    options.views = "0";
+    options.rays = {RayKind::random};
+    options.budget_s = 300;
     return options;
 }
 
@@ -307,10 +325,11 @@ Options parse_verb(Verb verb, const std::vector<std::string>& arguments)
     } catch (const CLI::ParseError& problem) {
         reject_command_line(verb, problem.what());
     }
-    if (asks_for_rivals(verb, app)) options = defaults_of_rivals();
+    if (asks_for(PaperTarget::rivals, verb, app)) options = defaults_of_rivals();
+    if (asks_for(PaperTarget::ladder, verb, app)) options = defaults_of_ladder();
     for (const OptionRow& row : option_table())
         if (takes(verb, row)) apply_row(options, row, app);
-    if (verb == Verb::reproduce) check_rivals(options, app);
+    if (verb == Verb::reproduce) check_bench_runs(options, app);
     if (verb == Verb::dump) check_case(options, app);
     check_workload(verb, app);
     check_axes(options);
@@ -410,9 +429,8 @@ std::vector<SceneRequest> scene_requests(const Options& options)
     build.resolution = options.resolution;
     build.time_limit_s = options.time_limit_s;
     build.optimise_s = options.optimise_s;
-    const bool is_rivals = std::ranges::find(options.targets, PaperTarget::rivals) != options.targets.end();
-    build.mesh_will_do =
-        is_rivals || options.verb == Verb::bench || options.verb == Verb::check || options.verb == Verb::render;
+    build.mesh_will_do = std::ranges::any_of(options.targets, is_bench_run) || options.verb == Verb::bench ||
+                         options.verb == Verb::check || options.verb == Verb::render;
     build.keep_unfinished = options.verb == Verb::build;
     build.memory_limit_bytes = options.memory_limit_bytes != 0 ? options.memory_limit_bytes : usual_memory_limit();
     const bool are_pinned = options.verb != Verb::build && is_usual_build(build);

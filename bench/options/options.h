@@ -52,12 +52,18 @@ enum class Picture { normals, steps };
 template <>
 inline constexpr auto enum_names<Picture> = names_up_to<Picture::steps>("normals", "steps");
 
-/// A table or a figure of the paper that `reproduce` measures again. One is not in the paper: rivals, our own
-/// claims about tets and BVHs.
-enum class PaperTarget { table3, table4, table5, table6, figure6, rivals };
+/// A table or a figure of the paper that `reproduce` measures again. Two are not in the paper: rivals, our own
+/// claims about tets and BVHs, and ladder, what a step costs by the size of a scene.
+enum class PaperTarget { table3, table4, table5, table6, figure6, rivals, ladder };
 template <>
-inline constexpr auto enum_names<PaperTarget> = names_up_to<PaperTarget::rivals>("table3", "table4", "table5", "table6",
-                                                                                 "figure6", "rivals");
+inline constexpr auto enum_names<PaperTarget> = names_up_to<PaperTarget::ladder>("table3", "table4", "table5", "table6",
+                                                                                 "figure6", "rivals", "ladder");
+
+/// Whether it is measured as `bench` measures, all views together, and by itself.
+[[nodiscard]] constexpr bool is_bench_run(PaperTarget target)
+{
+    return target == PaperTarget::rivals || target == PaperTarget::ladder;
+}
 
 /// A build of a scene that `reproduce` traces: a CDT as the options ask for, one as near to the paper's counts as
 /// known, or tets for rays.
@@ -155,7 +161,7 @@ struct Options {
     double sample_s = 0.1;      ///< that a sample lasts at least, on its device; 0: a pass
     double budget_s = 240;      ///< for verifying and timing all rows
 
-    std::vector<PaperTarget> targets;     ///< of `reproduce`; empty: those of the paper; rivals only by itself
+    std::vector<PaperTarget> targets;     ///< of `reproduce`; empty: those of the paper; the others only by themselves
     std::vector<PaperBuild> paper_builds; ///< of `reproduce`; empty: all
     SearchSize searches;                  ///< of `reproduce`
     bool resume = false;                  ///< continue from the journal

@@ -35,6 +35,7 @@ void each_number(AnyDevice& device, const Visit& visit)
     visit("timer_period_s", device.timer_period_s);
     visit("threads", device.threads);
     visit("max_steps", device.max_steps);
+    visit("cache_bytes", device.cache_bytes);
 }
 
 } // namespace

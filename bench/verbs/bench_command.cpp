@@ -55,19 +55,24 @@ BenchResult run_bench(const std::vector<RowKey>& keys, const Options& options, c
     const Recording shared{journal, nullptr, &watch, &budget};
     SceneRows run = open_and_verify(keys, options, {}, shared);
     result.measurement = measure_rows(run.rows, options, flags, shared);
-    result.conditions = host_conditions();
     result.rows = records_of(run.rows);
+    result.scenes = scene_records(run, options);
+    complete(result, options);
+    return result;
+}
+
+void complete(BenchResult& result, const Options& options)
+{
+    result.conditions = host_conditions();
     result.devices = devices_of(result.rows);
     result.interrupted = is_interrupted();
     if (!result.interrupted) measure_devices(result.devices, session_options(options));
     result.comparisons = compare_rows(result.rows);
     result.best_bvhs = compare_with_best_bvh(result.rows);
     result.missing_devices = missing_devices(options);
-    result.scenes = scene_records(run, options);
     result.threads = resolved_threads(options);
     result.samples_asked = options.samples;
     result.budget_s = options.budget_s;
-    return result;
 }
 
 namespace {

@@ -33,6 +33,10 @@ int merge_command(const Options& options);
 [[nodiscard]] BenchResult run_bench(const std::vector<RowKey>& keys, const Options& options,
                                     const BenchmarkFlags& flags, Journal* journal);
 
+/// Adds what follows from the rows and from the options: devices, which are measured, and comparisons. result: with
+/// all its rows, scenes and samples.
+void complete(BenchResult& result, const Options& options);
+
 /// Throws Error{missing} naming the first row of a required backend that has not been judged, unless that is expected:
 /// all its rows were selected, but none ran. judgement: of these rows.
 void require_judged(const std::vector<RowRecord>& rows, const CheckJudgement& judgement,

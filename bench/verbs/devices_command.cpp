@@ -156,6 +156,7 @@ std::string limits_text(const Device& device)
     std::vector<std::string> parts;
     if (device.max_buffer_bytes > 0) parts.push_back("largest buffer " + size_text(device.max_buffer_bytes));
     if (device.max_group_items > 0) parts.push_back(fmt::format("groups of {}", with_commas(device.max_group_items)));
+    if (device.cache_bytes > 0) parts.push_back("cache " + size_text(device.cache_bytes));
     if (device.group_width > 0) parts.push_back(fmt::format("{} in lockstep", device.group_width));
     if (device.timer_period_s > 0) parts.push_back(fmt::format("timer {:.3g} ns", 1e9 * device.timer_period_s));
     if (device.reports_code) parts.emplace_back("reports its code to 'inspect'");

@@ -1,10 +1,13 @@
 #include "bench/measuring/run_journal.h"
 #include "bench/reproduce/kept_costs.h"
+#include "bench/reproduce/tables/ladder.h"
 #include "bench/reproduce/tables/pictures.h"
 #include "bench/rivals/rival_run.h"
+#include "bench/rows/sized_scene.h"
 #include "bench/terminal/interrupts.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
+#include "bench/verbs/ladder.h"
 #include "bench/verbs/reproduction.h"
 
 #include <algorithm>
@@ -164,10 +167,25 @@ int reproduce_rivals(const Options& asked, JudgedRows& judged)
     result.missing_scenes = missing;
     const auto tables = rival_tables(result.rows, contest_scenes(result.scenes), left_out(options));
     judged.set(result.rows);
-    deliver_besides_junit(options, rival_report(result, tables, options));
+    deliver_besides_junit(options, bench_run_report(result, tables, {}, options));
     if (result.interrupted) return end_interrupted();
     end_journal(journal.get(), options);
     return judged.exit_code(options);
+}
+
+/// A run of `bench` for each scene, smallest first, and rays alone.
+int reproduce_ladder(const Options& asked, JudgedRows& judged)
+{
+    check_output(asked);
+    require_devices(asked.required);
+    const Options options = ladder_options(asked);
+    const auto rows = select_rows(options, scene_labels(options));
+    require_selected(rows, options);
+    const Ladder ladder = run_ladder(options, rows);
+    judged.set(ladder.result.rows);
+    deliver_besides_junit(options, bench_run_report(ladder.result, {ladder_table(ladder.result.rows, ladder.costs)},
+                                                    ladder_figures(ladder.result.rows, ladder.costs), options));
+    return ladder.result.interrupted ? end_interrupted() : judged.exit_code(options);
 }
 
 int reproduce_paper(const Options& asked, JudgedRows& judged)
@@ -214,6 +232,7 @@ int reproduce_command(const Options& options)
     const StopWhenInterrupted stop;
     JudgedRows judged;
     return with_junit(judged.rows, judged.judgement, options, [&] {
+        if (wants(options, PaperTarget::ladder)) return reproduce_ladder(options, judged);
         return wants(options, PaperTarget::rivals) ? reproduce_rivals(options, judged)
                                                    : reproduce_paper(options, judged);
     });

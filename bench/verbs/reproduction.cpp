@@ -95,7 +95,7 @@ Options with_defaults(Options options, std::vector<std::string>& missing)
 {
     if (options.targets.empty())
         for (const PaperTarget target : values_of<PaperTarget>())
-            if (target != PaperTarget::rivals) options.targets.push_back(target);
+            if (!is_bench_run(target)) options.targets.push_back(target);
     add_methods(options);
     if (!options.scenes.empty() || !wants_scenes(options)) return options;
     for (const char* const name : {"banana", "bunny", "armadillo"}) {
@@ -151,19 +151,22 @@ void make_tables(Reproduction& all, const Options& options)
     }
 }
 
-Report rival_report(const BenchResult& result, const std::vector<PaperTable>& tables, const Options& options)
+Report bench_run_report(const BenchResult& result, const std::vector<PaperTable>& tables,
+                        const std::vector<PaperFigure>& figures, const Options& options)
 {
     const Steadiness steadiness = steadiness_of(result);
     const PaperTables all = {tables,
-                             {},
+                             figures,
                              result.missing_scenes,
                              result.missing_devices,
                              is_timed(result) ? trust_text(steadiness) : std::string(),
                              result.interrupted};
-    Report report{tables_sheet(all), tidy_table(tables, {}), bench_report(result, options, result_head(options)).json,
-                  tables_markdown(all)};
+    Report report{tables_sheet(all), tidy_table(tables, figures),
+                  bench_report(result, options, result_head(options)).json, tables_markdown(all)};
     for (const PaperTable& table : tables)
         report.json["tetrace"]["tables"].push_back(table_json(table));
+    for (const PaperFigure& figure : figures)
+        report.json["tetrace"]["figures"].push_back(figure_json(figure));
     add_files(report, options);
     return report;
 }

@@ -37,9 +37,9 @@ void make_tables(Reproduction& all, const Options& options);
 
 [[nodiscard]] Report reproduction_report(const Reproduction& all, const Options& options);
 
-/// The page of `reproduce rivals`: these tables, and in JSON all that `bench` records too.
-[[nodiscard]] Report rival_report(const BenchResult& result, const std::vector<PaperTable>& tables,
-                                  const Options& options);
+/// The page of `reproduce rivals` or `ladder`: these tables and figures, and in JSON all that `bench` records too.
+[[nodiscard]] Report bench_run_report(const BenchResult& result, const std::vector<PaperTable>& tables,
+                                      const std::vector<PaperFigure>& figures, const Options& options);
 
 /// Tells all timed rows what the pulse and the load of the whole run say about their rates. They must have been
 /// watched.

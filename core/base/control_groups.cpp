@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <sstream>
+#include <unistd.h>
 
 namespace tetrace {
 
@@ -193,6 +195,18 @@ bool fits_in_memory(std::uint64_t bytes)
     if (bytes < small) return true;                          // also what ControlGroups itself allocates
     static const bool is_limited = ControlGroups().memory_bytes().has_value();
     return !is_limited || bytes + small <= ControlGroups().free_memory_bytes().value_or(bytes + small);
+}
+
+std::uint64_t available_memory_bytes()
+{
+    const std::string text = file_bytes("/proc/meminfo").value_or("");
+    constexpr std::string_view key = "MemAvailable:";
+    const std::size_t place = text.find(key);
+    const std::uint64_t bytes = place == std::string::npos
+                                    ? static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
+                                          static_cast<std::uint64_t>(::sysconf(_SC_PAGE_SIZE))
+                                    : 1024 * std::strtoull(text.c_str() + place + key.size(), nullptr, 10);
+    return std::min(bytes, ControlGroups().free_memory_bytes().value_or(bytes));
 }
 
 std::string memory_limit_text()

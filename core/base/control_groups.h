@@ -48,6 +48,10 @@ private:
 /// the process, which then says nothing. True for small arrays, and without a limit.
 [[nodiscard]] bool fits_in_memory(std::uint64_t bytes);
 
+/// What the system can still hand out without swapping, and the process's groups allow, in bytes; all of its memory if
+/// it does not say.
+[[nodiscard]] std::uint64_t available_memory_bytes();
+
 /// What follows "out of memory" where there is a limit: " (this container may use 512 MB)".
 [[nodiscard]] std::string memory_limit_text();
 

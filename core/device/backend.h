@@ -118,10 +118,11 @@ struct Device {
     double timer_period_s = 0;          ///< resolution of the clock that Session::wait reads; 0: unknown
     unsigned threads = 1;               ///< hardware threads or compute units
     bool usable = true;
-    bool compile_only = false; ///< not usable, but its driver compiles for it: hardware that is not here
-    bool broken = false;       ///< not usable because its driver failed: its rows are errors, and not skipped
-    std::string reason;        ///< why not, where not usable
-    bool reports_code = false; ///< its driver reports what it made of a kernel: Backend::compiled()
+    bool compile_only = false;     ///< not usable, but its driver compiles for it: hardware that is not here
+    bool broken = false;           ///< not usable because its driver failed: its rows are errors, and not skipped
+    std::string reason;            ///< why not, where not usable
+    bool reports_code = false;     ///< its driver reports what it made of a kernel: Backend::compiled()
+    std::uint64_t cache_bytes = 0; ///< of its largest cache; 0: unknown
 };
 
 /// What a session works on; the caller keeps it alive. `packed` is null for kernels that are not portable, which build

@@ -26,6 +26,15 @@ std::string processor_name()
     return "CPU";
 }
 
+/// 0 if the system does not say.
+std::uint64_t largest_cache_bytes()
+{
+    long bytes = 0;
+    for (const int level : {_SC_LEVEL2_CACHE_SIZE, _SC_LEVEL3_CACHE_SIZE, _SC_LEVEL4_CACHE_SIZE})
+        bytes = std::max(bytes, sysconf(level));
+    return static_cast<std::uint64_t>(bytes);
+}
+
 } // namespace
 
 Device host_device()
@@ -38,6 +47,7 @@ Device host_device()
         static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
     device.memory_bytes = std::min(bytes, ControlGroups().memory_bytes().value_or(bytes));
     device.threads = std::thread::hardware_concurrency();
+    device.cache_bytes = largest_cache_bytes();
     return device;
 }
 

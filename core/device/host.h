@@ -9,8 +9,8 @@
 
 namespace tetrace {
 
-/// The machine's processor as a device: model name, and memory or a container's limit of it; the caller adds driver
-/// and threads.
+/// The machine's processor as a device: model name, largest cache, and memory or a container's limit of it; the caller
+/// adds driver and threads.
 [[nodiscard]] Device host_device();
 
 /// Whether the processor runs code compiled for x86-64-v3 (AVX2 and fused multiply-add); true on other architectures,

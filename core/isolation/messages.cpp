@@ -18,11 +18,11 @@ template <class Visit>
 void each_text(Device& device, const Visit& visit)
 {
     auto& [name, kind, driver, implementation, id, uuid, pci, library, memory_bytes, max_buffer_bytes, max_group_items,
-           group_width, max_steps, timer_period_s, threads, usable, compile_only, broken, reason, reports_code] =
-        device;
+           group_width, max_steps, timer_period_s, threads, usable, compile_only, broken, reason, reports_code,
+           cache_bytes] = device;
     static_cast<void>(std::tie(kind, memory_bytes, max_buffer_bytes, max_group_items, group_width, max_steps,
-                               timer_period_s, threads, usable, compile_only, broken,
-                               reports_code)); // see each_number()
+                               timer_period_s, threads, usable, compile_only, broken, reports_code,
+                               cache_bytes)); // see each_number()
     for (std::string* text : {&name, &driver, &implementation, &id, &uuid, &pci, &library, &reason})
         visit(*text);
 }
@@ -42,6 +42,7 @@ void each_number(Device& device, const Visit& visit)
     visit(device.compile_only);
     visit(device.broken);
     visit(device.reports_code);
+    visit(device.cache_bytes);
 }
 
 /// The arrays of a packed scene that a device gets; all members by name, for the same reason.

@@ -201,18 +201,15 @@ Scene make_cubes(std::uint32_t resolution)
 } // namespace tetrace
 
 // Solid cubes scattered through a grid of cubes.
+#include "core/base/control_groups.h"
 #include "core/base/error.h"
-#include "core/base/files.h"
 #include "scenes/catalogue.h"
 #include "scenes/procedural.h"
 #include "scenes/procedural/cube_grid.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <fmt/format.h>
 #include <string>
-#include <string_view>
-#include <unistd.h>
 
 namespace tetrace {
 
@@ -229,22 +226,12 @@ bool is_solid(const CubeGrid::Cell& cube, std::int32_t n)
     return scramble(~number) % static_cast<std::uint32_t>(3 * n) < 4;
 }
 
-/// What the system can still hand out without swapping, in bytes; all of its memory where it does not say.
-std::uint64_t available_memory()
-{
-    const std::string text = file_bytes("/proc/meminfo").value_or("");
-    constexpr std::string_view key = "MemAvailable:";
-    if (const std::size_t place = text.find(key); place != std::string::npos)
-        return 1024 * std::strtoull(text.c_str() + place + key.size(), nullptr, 10);
-    return static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(::sysconf(_SC_PAGE_SIZE));
-}
-
 /// Memory that the system hands out is not always there; a process that uses more is killed. Packing has all tets once
 /// more, in its order.
 void require_memory(std::uint64_t n)
 {
     const std::uint64_t needed = 2 * lattice_tets(n) * sizeof(Tet) + (n + 1) * (n + 1) * (n + 1) * sizeof(Float3);
-    if (const std::uint64_t there = available_memory(); needed > there)
+    if (const std::uint64_t there = available_memory_bytes(); needed > there)
         throw Error(ErrorKind::unsupported,
                     fmt::format("making scene lattice:{}: its {} tets take {} bytes until they are packed, and this "
                                 "machine has {} left; use a smaller one",

@@ -43,8 +43,8 @@ runs_all_steps_without_this_systems_drivers)
         tail -n 20 "$folder"/out/*.log
         fail "run-all ended with $?"
     }
-    for file in devices.json check.json check.xml check-all.json check-rays.json defects.json bench.json bench-8x4.json \
-        bench-8x8.json bench-bvhs.json bench-rays.json bench-fast.json bench-large.json reproduce-rays.json reproduce.json; do
+    for file in devices.json defects.json check.json check.xml check-all.json check-rays.json bench.json bench-rays.json \
+        ladder.json bench-losing.json bench-host.json bench-schedules.json reproduce-rays.json reproduce.json; do
         [ -s "$folder/out/$file" ] || fail "no $file"
     done
     ls "$folder"/out/pictures-openmp/*.ppm || fail "no pictures"

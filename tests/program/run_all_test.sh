@@ -28,12 +28,12 @@ case $claim in
 steps_that_end_well_give_0)
     tetrace_is 'echo "it ran: $*"'
     run_all 0 "$out" --quick
-    for step in devices check check-all check-rays defects bench bench-8x4 bench-8x8 bench-bvhs bench-rays bench-fast \
-        bench-large render-openmp render-cuda reproduce-rays reproduce; do
+    for step in devices defects check check-all check-rays bench bench-rays ladder bench-losing bench-host \
+        bench-schedules render-openmp render-cuda reproduce-rays reproduce; do
         summary_has "^$step +ok "
         grep -q 'it ran' "$out/$step.txt" || fail "what $step printed is not kept"
     done
-    summary_has '^0 steps failed'
+    summary_has '^0 steps failed, 0 skipped'
     [ ! -e "$out/.work" ] || fail "its working folder is left over" ;;
 a_hang_and_a_failure_lose_no_other_step)
     tetrace_is 'case "$*" in
@@ -46,10 +46,20 @@ a_hang_and_a_failure_lose_no_other_step)
     run_all 1 "$out" --quick --limit 2
     summary_has '^devices +ok '
     summary_has '^check +timed out after 2 s '
-    summary_has '^bench-fast +failed with exit code 1 '
+    summary_has '^bench-rays +failed with exit code 1 '
     summary_has '^render-cuda +ended by signal 11 '
     grep -q partly "$out/check.txt" || fail "what a hanging step printed is lost"
     grep -q reason "$out/bench.log" || fail "what a failing step said is lost" ;;
+the_time_of_all_steps_shortens_later_ones_and_then_skips_them)
+    tetrace_is 'case "$1 $*" in "bench "*/bench.json*) exec sleep 1000 ;; esac; echo "it ran: $*"'
+    run_all 1 "$out" --quick --limit-all 12
+    summary_has '^check +ok '
+    grep -Eq '^bench +timed out after [0-9]+ s [(]of 75 s[)]' "$out/summary.txt" || fail "bench was not shortened"
+    summary_has '^reproduce +skipped at --limit-all '
+    summary_has '^1 steps failed, [0-9]+ skipped, 1[0-9] s in all'
+    tetrace_is 'echo "it ran: $*"'
+    run_all 0 "$out" --quick --limit-all 60
+    grep -Eq ' bench .*--budget [0-9]+s' "$out/bench.txt" || fail "its budget does not follow from its limit" ;;
 known_defects_of_compilers_are_no_failure)
     tetrace_is 'case "$*" in *--defects*) exit 1 ;; esac'
     run_all 0 "$out" --quick
@@ -107,7 +117,7 @@ assert steps["bench"]["exit_code"] == 1 and steps["bench"]["seconds"] >= 0, step
 END
     ;;
 an_interrupt_ends_the_step_and_keeps_the_summary)
-    tetrace_is 'case $1 in check) echo $$ >"'"$folder"'/process"; exec sleep 1000 ;; esac'
+    tetrace_is 'case $1 in bench) echo $$ >"'"$folder"'/process"; exec sleep 1000 ;; esac'
     env -i PATH=/usr/bin:/bin "$folder/a bundle/run-all" "$out" --quick >"$folder/printed" 2>"$folder/said" &
     until [ -s "$folder/process" ]; do sleep 0.1; done
     kill -TERM $!
@@ -115,7 +125,7 @@ an_interrupt_ends_the_step_and_keeps_the_summary)
     code=$?
     [ $code = 1 ] || fail "exit code $code, not 1"
     summary_has '^devices +ok '
-    summary_has '^check +interrupted '
+    summary_has '^bench +interrupted '
     ! kill -0 "$(cat "$folder/process")" 2>/dev/null || fail "the step runs on" ;;
 refuses_what_it_does_not_know)
     tetrace_is 'exit 0'
@@ -123,6 +133,7 @@ refuses_what_it_does_not_know)
     run_all 2 "$out" --slow
     run_all 2 "$out" --patience 0
     run_all 2 "$out" --limit
+    run_all 2 "$out" --limit-all 0
     run_all 2 "$out" "$out.more"
     [ ! -e "$out" ] || fail "a folder was made all the same"
     run_all 0 --help

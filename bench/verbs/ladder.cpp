@@ -1,0 +1,163 @@
+#include "bench/verbs/ladder.h"
+
+#include "bench/rows/row_tracing.h"
+#include "bench/terminal/interrupts.h"
+#include "bench/terminal/progress.h"
+#include "bench/terminal/text.h"
+#include "bench/verbs/commands.h"
+#include "core/base/control_groups.h"
+#include "core/base/stopwatch.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <iterator>
+#include <set>
+
+namespace tetrace {
+
+namespace {
+
+constexpr unsigned rounds_of_lone_rays = 10; // min_views: fewer give no interval
+constexpr double growth = 2;             // of a scene's time: its rays cross 1.6 times as many tets as the last one's
+constexpr double share_of_samples = 0.7; // of a scene's budget; rays alone have the rest
+
+/// Cubes along an axis for which half32 takes 1, 4, 16, 64, 256, 1024 and 4096 MB.
+constexpr int ladder_lattices[] = {11, 17, 27, 44, 69, 110, 174};
+
+/// Bytes of host memory that a scene of so many tets takes at its most, by /usr/bin/time for lattice:69: its own and
+/// its packed forms, and once more what drivers that compute on the host's memory copy.
+std::uint64_t host_bytes(std::uint64_t tets, const std::vector<RowKey>& rows)
+{
+    std::set<std::string> copying;
+    for (const RowKey& row : rows)
+        if (backend_named(row.backend).devices().at(row.device).kind == DeviceKind::emulated)
+            copying.insert(device_label(row));
+    return tets * (300 + 200 * copying.size());
+}
+
+/// Of a lattice; 0 for other scenes.
+std::uint64_t tets_of(const std::string& scene)
+{
+    const auto n = lattice_resolution(scene);
+    return n ? lattice_tets(*n) : 0;
+}
+
+/// Why a scene is not measured; empty if it is. last_s: what the scene before it took until its rows were verified.
+std::string why_left_out(const std::string& scene, const std::vector<RowKey>& rows, double last_s, double left_s)
+{
+    const std::uint64_t needed = host_bytes(tets_of(scene), rows), there = available_memory_bytes();
+    if (needed > there)
+        return fmt::format("{} is left out: making and packing it takes about {}, and {} of this machine's memory are "
+                           "available",
+                           scene, size_text(needed), size_text(there));
+    if (growth * last_s > left_s)
+        return fmt::format("{} is left out: making and verifying it takes about {}, and --budget leaves {}", scene,
+                           seconds_text(growth * last_s), seconds_text(std::max(0.0, left_s)));
+    return {};
+}
+
+/// Rays alone, of every row that is timed. Rows of one structure share what their rays visit.
+std::vector<StepCosts> measure_lone_rays(std::vector<RowRun>& rows, const Budget& budget)
+{
+    std::vector<StepCosts> costs(rows.size());
+    std::map<Layout, std::vector<double>> nodes; // by layout; empty for tets
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        RowRun& row = rows[i];
+        if (is_interrupted() || !is_timed(row)) continue;
+        progress_line().show("rays alone", static_cast<double>(i) / static_cast<double>(rows.size()), -1,
+                             row.key.scene + ", " + row_label(row.key));
+        const Layout layout = row.key.kernel.layout;
+        if (!nodes.contains(layout)) nodes[layout] = visited_nodes(row, 0);
+        measure_steps(row, costs[i], nodes[layout], rounds_of_lone_rays, budget);
+    }
+    progress_line().clear();
+    return costs;
+}
+
+/// The host's calibration is the same work throughout; a GPU's is a scene's own.
+void append(std::vector<Pulse>& to, std::vector<Pulse> more, const std::string& scene)
+{
+    for (Pulse& pulse : more) {
+        if (pulse.of != "host") pulse.of += ", " + scene;
+        const auto known = std::ranges::find(to, pulse.of, &Pulse::of);
+        if (known == to.end())
+            to.push_back(std::move(pulse));
+        else
+            std::ranges::move(pulse.readings, std::back_inserter(known->readings));
+    }
+}
+
+void append(BenchResult& to, const SceneRows& run, Measurement measured, const Options& options)
+{
+    std::ranges::move(records_of(run.rows), std::back_inserter(to.rows));
+    std::ranges::move(scene_records(run, options), std::back_inserter(to.scenes));
+    measured.wall_s += to.measurement.wall_s;
+    measured.lowered |= to.measurement.lowered;
+    std::vector<Pulse> pulses = std::move(to.measurement.pulses);
+    append(pulses, std::move(measured.pulses), scene_label(options.scenes.front()));
+    measured.pulses = std::move(pulses);
+    to.measurement = std::move(measured);
+}
+
+/// budget_s: of this scene. Returns seconds until its rows were verified.
+double run_scene(Ladder& ladder, const std::vector<RowKey>& rows, const Options& options, const Clock& clock,
+                 double budget_s)
+{
+    const Stopwatch stopwatch;
+    MachineWatch watch = watch_of(host_pulse(resolved_threads(options)), nullptr, clock);
+    const Budget whole(budget_s);
+    Budget budget(share_of_samples * budget_s);
+    const Recording shared{nullptr, nullptr, &watch, &budget};
+    SceneRows run = open_and_verify(rows, options, {}, shared);
+    const double verified_s = stopwatch.seconds();
+    Measurement measured = measure_rows(run.rows, options, {}, shared);
+    std::ranges::move(measure_lone_rays(run.rows, whole), std::back_inserter(ladder.costs));
+    append(ladder.result, run, std::move(measured), options);
+    return verified_s;
+}
+
+std::vector<RowKey> rows_of_scene(const std::vector<RowKey>& rows, const std::string& scene)
+{
+    std::vector<RowKey> found;
+    std::ranges::copy_if(rows, std::back_inserter(found),
+                         [&](const RowKey& row) { return row.scene == scene_label(scene); });
+    return found;
+}
+
+} // namespace
+
+Options ladder_options(Options options)
+{
+    if (options.scenes.empty())
+        for (const int n : ladder_lattices)
+            options.scenes.push_back(fmt::format("lattice:{}", n));
+    if (options.layouts.empty()) options.layouts = {Layout::half32, Layout::tet64, Layout::bvh2};
+    options.exact_samples = true; // further ones of noisy rows would take the time of rays alone
+    if (options.methods.empty()) options.methods = {Method::project, Method::single};
+    return options;
+}
+
+Ladder run_ladder(const Options& options, const std::vector<RowKey>& rows)
+{
+    Ladder ladder;
+    const Clock clock = host_clock();
+    double last_s = 0;
+    for (std::size_t i = 0; i < options.scenes.size() && !is_interrupted(); ++i) {
+        Options of_scene = options;
+        of_scene.scenes = {options.scenes[i]};
+        const auto of_rows = rows_of_scene(rows, options.scenes[i]);
+        if (of_rows.empty()) continue; // --filter
+        const double left_s = options.budget_s - clock();
+        const std::string reason = i == 0 ? std::string() : why_left_out(options.scenes[i], of_rows, last_s, left_s);
+        if (!reason.empty()) {
+            say(reason);
+            ladder.result.missing_scenes.push_back(reason);
+            continue;
+        }
+        last_s = run_scene(ladder, of_rows, of_scene, clock, left_s / static_cast<double>(options.scenes.size() - i));
+    }
+    complete(ladder.result, options);
+    return ladder;
+}
+
+} // namespace tetrace

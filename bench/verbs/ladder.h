@@ -1,0 +1,25 @@
+#pragma once
+
+#include "bench/measuring/lone_rays.h"
+#include "bench/output/bench_report.h"
+
+#include <vector>
+
+namespace tetrace {
+
+/// All data of `reproduce ladder`.
+struct Ladder {
+    BenchResult result;
+    std::vector<StepCosts> costs; ///< of the result's rows
+};
+
+/// The options of `reproduce ladder` with what is not named: lattices whose half32 takes 1 MB to 4 GB, four times more
+/// each; half32, tet64 and bvh2 in one form each.
+[[nodiscard]] Options ladder_options(Options options);
+
+/// Measures scene after scene, in the order of the options: each is closed before the next is made. A scene that the
+/// machine's memory cannot hold, or for which the budget has no time, is left out, and so are those after it; the
+/// result says why. rows: of those options.
+[[nodiscard]] Ladder run_ladder(const Options& options, const std::vector<RowKey>& rows);
+
+} // namespace tetrace
