@@ -213,6 +213,11 @@ INSTANTIATE_TEST_SUITE_P(each, InspectedTarget,
                                                 "outside,inside,rays"}}),
                          [](const auto& instance) { return instance.param.target; });
 
+// What a change of a kernel most often costs, in seconds: `each` is run by `make test-all`.
+INSTANTIATE_TEST_SUITE_P(of_default_rows, InspectedTarget,
+                         testing::Values(Asked{"navi21", {"--layout half32,bvh2,bvh4,cwbvh --entry outside"}}),
+                         [](const auto& instance) { return instance.param.target; });
+
 TEST_P(InspectedTarget, decides_nothing_by_fused_operations_spills_nothing_and_has_the_figures_of_its_compiler)
 {
     const std::string target = GetParam().target;
