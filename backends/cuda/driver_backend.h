@@ -33,7 +33,8 @@ public:
                                                    std::span<const Quad> operations) override;
     [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t device, const SessionOptions& options) override;
     [[nodiscard]] bool runs_defects() const override { return true; }
-    [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name) override;
+    [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name,
+                                                        const DefectLaunch& launch) override;
     [[nodiscard]] std::vector<KernelFile> kernel_files(const KernelId& kernel) const override;
 
 private:

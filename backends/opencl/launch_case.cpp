@@ -1,8 +1,7 @@
 #include "backends/opencl/launch_case.h"
 
 #include "backends/opencl/kernels.h"
-#include "backends/opencl/program.h"
-#include "core/device/defects.h"
+#include "backends/opencl/probe.h"
 #include "core/device/scene_buffers.h"
 
 #include <algorithm>
@@ -63,12 +62,13 @@ LaunchCase tile_case(const Device& device, const KernelId& kernel, const PackedS
     return made;
 }
 
-LaunchCase defect_case(std::string_view name)
+LaunchCase defect_case(std::string_view name, const DefectLaunch& launch)
 {
     const FoundDevice any;
-    LaunchCase made = case_of(any, {"defects"}, "run_" + std::string(name), defect_items);
+    LaunchCase made = case_of(any, defect_program(name), "run_defect", launch.group_items);
     const auto words = defect_words();
-    made.inputs = {input("buffer", 0, "words", "what the kernel reads", std::span(words))};
+    made.inputs = {input("buffer", 0, "words", "what the kernel reads", std::span(words)),
+                   input("value", 2, "count", "the number of items", std::span(&launch.items, 1))};
     made.output = 1;
     return made;
 }

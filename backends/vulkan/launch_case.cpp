@@ -2,7 +2,6 @@
 
 #include "backends/vulkan/kernels.h"
 #include "backends/vulkan/session.h"
-#include "core/device/defects.h"
 
 #include <array>
 
@@ -78,9 +77,10 @@ LaunchCase tile_case(const Device& device, const KernelId& kernel, const PackedS
     return made;
 }
 
-LaunchCase defect_case(std::string_view name)
+LaunchCase defect_case(std::string_view name, const DefectLaunch& launch)
 {
     LaunchCase made = case_of(vulkan_defects::embedded_kernels(), std::string(name));
+    made.lines.push_back("constant 0 " + std::to_string(launch.group_items));
     const auto words = defect_words();
     made.inputs = {case_input("buffer 0", "words", "what the kernel reads", std::as_bytes(std::span(words)))};
     made.output = 1;

@@ -71,12 +71,11 @@ DumpedCase files_of_case(const LaunchCase& launch, const CaseOutput& output, con
 
 DumpedCase defect_case(const Backend& backend, std::string_view name)
 {
-    const auto launch = backend.defect_case(name);
-    if (!launch) refuse_case(backend);
     const Defect& defect = *std::ranges::find(all_defects(), name, &Defect::name);
+    const auto launch = backend.defect_case(name, defect.case_launch());
+    if (!launch) refuse_case(backend);
     CaseOutput output;
-    for (std::uint32_t item = 0; item < defect_items; ++item)
-        output.expected.push_back(defect.expected(item));
+    output.expected = expected_words(defect, defect.case_launch().items);
     return files_of_case(*launch, output,
                          fmt::format("{} on {}: {}; known in {}", name, backend.name(), defect.what, defect.known));
 }
@@ -152,7 +151,7 @@ DumpedCase tile_case(const Options& options, const Backend& backend)
     if (one_kernel(options).math != MathMode::exact)
         throw Error(ErrorKind::usage, "dump: a case is of math mode exact: in fast, every driver may have other hits");
     const RowKey key = expecting_row(options);
-    if (!backend.defect_case(all_defects().front().name)) refuse_case(backend);
+    if (!backend.defect_case(all_defects().front().name, {})) refuse_case(backend);
     const Device target = case_target(options, backend);
     SceneWork scene = load_work(scene_requests(options).front(), options);
     RowRun row = open_row(key, scene, options);

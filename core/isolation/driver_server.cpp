@@ -1,8 +1,10 @@
 #include "core/isolation/driver_server.h"
 
+#include "core/device/defects.h"
 #include "core/isolation/channel.h"
 #include "core/isolation/messages.h"
 
+#include <algorithm>
 #include <csignal>
 #include <fstream>
 #include <map>
@@ -33,7 +35,7 @@ public:
             ByteReader request(std::move(message.bytes));
             const auto what = request.get<Request>();
             if (what < Request::open)
-                answer_backend(answer, what, request);
+                answer_backend(answer, what, request, std::move(message.file));
             else if (what == Request::open)
                 open(answer, request, std::move(message.file));
             else
@@ -51,7 +53,7 @@ private:
         std::unique_ptr<Session> session;
     };
 
-    void answer_backend(ByteWriter& answer, Request what, ByteReader& request)
+    void answer_backend(ByteWriter& answer, Request what, ByteReader& request, Descriptor file)
     {
         if (what == Request::devices) return put_devices(answer, backend_->devices());
         const auto device = request.get<std::uint64_t>();
@@ -62,8 +64,12 @@ private:
             const auto words = backend_->probe(device, math, request.get_all<Quad>());
             answer.put_all(std::span<const std::uint32_t>(words));
         } else if (what == Request::run_defect) {
-            const auto words = backend_->run_defect(device, request.get_text());
-            answer.put_all(std::span<const std::uint32_t>(words));
+            const auto launch = request.get<DefectLaunch>();
+            const auto words = backend_->run_defect(device, request.get_text(), launch);
+            const SharedMemory memory(std::move(file), launch.items * sizeof(words[0]));
+            const auto bytes = std::as_bytes(std::span(words).first(std::min<std::size_t>(words.size(), launch.items)));
+            std::ranges::copy(bytes, memory.bytes().begin());
+            answer.put(std::uint64_t{bytes.size()});
         } else {
             const auto yardstick = backend_->yardstick(device, get_options(request));
             answer.put(yardstick.has_value());

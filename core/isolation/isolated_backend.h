@@ -27,7 +27,8 @@ public:
                                                    std::span<const Quad> operations) override;
     [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t device, const SessionOptions& options) override;
     [[nodiscard]] bool runs_defects() const override { return inner_->runs_defects(); }
-    [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name) override;
+    [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name,
+                                                        const DefectLaunch& launch) override;
 
     /// The device's process, started where there is none. Throws Error{missing} if the device cannot be used,
     /// Error{driver} where it cannot be found again.

@@ -59,7 +59,7 @@ constexpr const char* tile = "--scene cubes --resolution 6 --size 24x20 --pixel 
 TEST_P(Case, of_a_reduced_kernel_shows_the_defect_exactly_where_check_sees_it)
 {
     if (const std::string reason = why_no_host(); !reason.empty()) GTEST_SKIP() << reason;
-    const Ended check = run(std::string("check --defects --format csv --backend ") + GetParam().name);
+    const Ended check = run(std::string("check --defects --stress --format csv --backend ") + GetParam().name);
     for (const Defect& defect : all_defects()) {
         ASSERT_EQ(dump("--defect " + std::string(defect.name)).code, 0);
         const std::string row = check.out.substr(check.out.find(std::string(defect.name) + ","));
