@@ -10,7 +10,8 @@ namespace tetrace::opencl {
 
 namespace {
 
-LaunchCase case_of(const FoundDevice& device, const ProgramId& id, const std::string& entry, unsigned items)
+LaunchCase case_of(const FoundDevice& device, const ProgramId& id, const std::string& entry, unsigned items,
+                   std::uint32_t groups = 1)
 {
     const auto text = [](std::string_view name) {
         const EmbeddedKernel* const kernel = find_kernel(embedded_kernels(), name);
@@ -21,7 +22,8 @@ LaunchCase case_of(const FoundDevice& device, const ProgramId& id, const std::st
     made.program = {id.source + ".cl", "the program, OpenCL C with its includes resolved", {}, text(id.source)};
     made.host = {"run_case.c", "a host in C, whose head explains case.txt",
                  "cc -O1 -o run_case run_case.c -l:libOpenCL.so.1 && ./run_case", text("run_case")};
-    made.lines = {"options " + build_options(device, id), "entry " + entry, "items " + std::to_string(items)};
+    made.lines = {"options " + build_options(device, id), "entry " + entry, "items " + std::to_string(items),
+                  "groups " + std::to_string(groups)};
     return made;
 }
 
@@ -65,7 +67,7 @@ LaunchCase tile_case(const Device& device, const KernelId& kernel, const PackedS
 LaunchCase defect_case(std::string_view name, const DefectLaunch& launch)
 {
     const FoundDevice any;
-    LaunchCase made = case_of(any, defect_program(name), "run_defect", launch.group_items);
+    LaunchCase made = case_of(any, defect_program(name), "run_defect", launch.group_items, launch.groups());
     const auto words = defect_words();
     made.inputs = {input("buffer", 0, "words", "what the kernel reads", std::span(words)),
                    input("value", 2, "count", "the number of items", std::span(&launch.items, 1))};

@@ -47,8 +47,7 @@ std::vector<std::uint32_t> run_defect(Context& context, std::string_view name, c
         kernel.setArg(0, from);
         kernel.setArg(1, to);
         kernel.setArg(2, launch.items);
-        const cl::NDRange group(launch.group_items);
-        const cl::NDRange all((launch.items + launch.group_items - 1) / launch.group_items * launch.group_items);
+        const cl::NDRange group(launch.group_items), all(launch.groups() * launch.group_items);
         queue.enqueueNDRangeKernel(kernel, cl::NullRange, all, group);
         queue.enqueueReadBuffer(to, CL_TRUE, 0, written_bytes, results.data());
     });

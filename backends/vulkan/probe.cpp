@@ -73,7 +73,7 @@ std::vector<std::uint32_t> run_defect(const Context& context, std::string_view n
         const vk::raii::CommandBuffer commands = context.make_commands();
         commands.begin({});
         program.record(commands);
-        commands.dispatch((launch.items + launch.group_items - 1) / launch.group_items, 1, 1);
+        commands.dispatch(launch.groups(), 1, 1);
         record_barrier(context, commands);
         commands.end();
         context.submit(commands);

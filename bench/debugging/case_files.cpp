@@ -40,8 +40,7 @@ DumpedCase files_of_case(const LaunchCase& launch, const CaseOutput& output, con
                                        build.commit, launch.program.name);
     for (const std::string& line : launch.lines)
         manifest += line + "\n";
-    manifest += "groups 1\n";
-    DumpedCase made{title, {{"case.txt", "one work-group of a launch, line by line", {}, {}}, launch.host}};
+    DumpedCase made{title, {{"case.txt", "the launch, line by line", {}, {}}, launch.host}};
     made.files.push_back(launch.program);
     for (const LaunchCase::Input& input : launch.inputs) {
         manifest += fmt::format("{} {}\n", input.line, input.file.name);
@@ -71,13 +70,15 @@ DumpedCase files_of_case(const LaunchCase& launch, const CaseOutput& output, con
 
 DumpedCase defect_case(const Backend& backend, std::string_view name)
 {
-    const Defect& defect = *std::ranges::find(all_defects(), name, &Defect::name);
-    const auto launch = backend.defect_case(name, defect.case_launch());
+    const ChosenDefect chosen = chosen_defect(name).value();
+    const Defect& defect = *chosen.defect;
+    const auto launch = backend.defect_case(defect.name, chosen.launch);
     if (!launch) refuse_case(backend);
     CaseOutput output;
-    output.expected = expected_words(defect, defect.case_launch().items);
+    output.expected = expected_words(defect, chosen.launch.items);
     return files_of_case(*launch, output,
-                         fmt::format("{} on {}: {}; known in {}", name, backend.name(), defect.what, defect.known));
+                         fmt::format("{} on {}: {}; {} {}", name, backend.name(), defect.what,
+                                     defect.is_stressor ? "reports of the kind:" : "known in", defect.known));
 }
 
 /// The device for which a case is written.

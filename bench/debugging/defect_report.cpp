@@ -173,13 +173,11 @@ std::string line_or_nothing(const ResultValue& object, const char* key)
     return value ? value->line() : std::string();
 }
 
-/// group_items: 0 if the items are one group.
-std::string wrong_text(std::uint64_t item, std::uint64_t word, std::uint64_t expected, std::uint64_t items,
-                       std::uint64_t group_items)
+/// launch: of a stressor, as `dump --defect` has it.
+std::string wrong_text(std::uint64_t item, std::uint64_t word, std::uint64_t expected, const std::string& launch)
 {
-    std::string text = fmt::format("item {} returns {} instead of {}", item, word, expected);
-    if (group_items != 0) text += fmt::format(", of {} in groups of {}", with_commas(items), group_items);
-    return text;
+    return fmt::format("item {} returns {} instead of {}", item, word, expected) +
+           (launch.empty() ? "" : " (dump --defect " + launch + ")");
 }
 
 ShownRun read_run(const ResultValue& value)
@@ -202,8 +200,9 @@ ShownRun read_run(const ResultValue& value)
     const auto count = value.find("wrong"); // wrong_items has only the first
     run.wrong = count ? count->count() : value.at("wrong_items").items().size();
     const ResultValue first = value.at("first_wrong");
-    run.detail = wrong_text(first.at("item").count(), first.at("word").count(), first.at("expected").count(), run.items,
-                            run.group_items);
+    const std::string launch =
+        run.group_items == 0 ? "" : fmt::format("{}:{}:{}", run.defect, run.items, run.group_items);
+    run.detail = wrong_text(first.at("item").count(), first.at("word").count(), first.at("expected").count(), launch);
     return run;
 }
 
@@ -313,11 +312,10 @@ std::string summary(const std::vector<ShownRun>& runs)
         return std::ranges::count(runs, std::string(name_of(sight)), &ShownRun::outcome);
     };
     const bool stresses = std::ranges::any_of(runs, [](const ShownRun& run) { return run.group_items != 0; });
-    return fmt::format("{} {} ran: {} {}; {} skipped, {} errors",
-                       count(DefectSight::seen) + count(DefectSight::not_seen),
-                       stresses ? "kernels" : "reduced kernels", count(DefectSight::seen),
-                       stresses ? "have wrong results" : "show their defect", count(DefectSight::skipped),
-                       count(DefectSight::error));
+    return fmt::format(
+        "{} {} ran: {} {}; {} skipped, {} errors", count(DefectSight::seen) + count(DefectSight::not_seen),
+        stresses ? "kernels" : "reduced kernels", count(DefectSight::seen),
+        stresses ? "have wrong results" : "show their defect", count(DefectSight::skipped), count(DefectSight::error));
 }
 
 /// The first wrong word, or the reason; empty if all is well.
@@ -325,8 +323,10 @@ std::string detail_of(const DefectRun& run)
 {
     if (run.sight != DefectSight::seen) return run.reason;
     const std::uint32_t item = run.wrong.front();
-    return wrong_text(item, run.first_word, run.defect->expected(item), run.launch.items,
-                      run.defect->is_stressor ? run.launch.group_items : 0);
+    const std::string launch = run.defect->is_stressor
+                                   ? fmt::format("{}:{}:{}", run.defect->name, run.launch.items, run.launch.group_items)
+                                   : "";
+    return wrong_text(item, run.first_word, run.defect->expected(item), launch);
 }
 
 CaseOutcome outcome_of(const DefectRun& run)

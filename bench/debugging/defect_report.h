@@ -58,9 +58,9 @@ struct ShownDefects {
 /// the key that is missing or of another kind.
 [[nodiscard]] ShownDefects shown_defects(const ResultValue& section);
 
-/// Defects against drivers: a line per defect, a column per device; what each defect is, and the first wrong word of each
-/// that was seen. missing: sentences on backends without a device. expectations: those that the runs were judged by;
-/// may be null.
+/// Defects against drivers: a line per defect, a column per device; what each defect is, and the first wrong word of
+/// each that was seen. missing: sentences on backends without a device. expectations: those that the runs were judged
+/// by; may be null.
 [[nodiscard]] Report defect_report(const std::vector<DefectRun>& runs, const std::vector<std::string>& missing,
                                    const Options& options, const Expectations* expectations = nullptr);
 

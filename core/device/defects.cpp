@@ -2,7 +2,10 @@
 
 #include "core/device/stressors.h"
 
+#include <algorithm>
+#include <charconv>
 #include <numeric>
+#include <system_error>
 
 namespace tetrace {
 
@@ -51,6 +54,25 @@ std::span<const Defect> all_defects()
         return all;
     }();
     return defects;
+}
+
+std::optional<ChosenDefect> chosen_defect(std::string_view text)
+{
+    const auto colon = text.find(':');
+    const auto defects = all_defects();
+    const auto defect = std::ranges::find(defects, text.substr(0, colon), &Defect::name);
+    if (defect == defects.end()) return std::nullopt;
+    if (colon == std::string_view::npos) return ChosenDefect{&*defect, defect->case_launch()};
+    DefectLaunch launch;
+    const char* const end = text.data() + text.size();
+    const auto items = std::from_chars(text.data() + colon + 1, end, launch.items);
+    if (items.ec != std::errc() || items.ptr == end || *items.ptr != ':') return std::nullopt;
+    const auto group = std::from_chars(items.ptr + 1, end, launch.group_items);
+    const DefectLaunch& largest = defect->launches().back();
+    const bool is_within = launch.items >= 1 && launch.items <= largest.items && launch.group_items >= 1 &&
+                           launch.group_items <= largest.group_items;
+    if (group.ec != std::errc() || group.ptr != end || !is_within) return std::nullopt;
+    return ChosenDefect{&*defect, launch};
 }
 
 std::vector<std::uint32_t> defect_words()

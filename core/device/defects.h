@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -11,6 +12,8 @@ namespace tetrace {
 /// How many items a kernel has, and how many of them are a work group; the last group may have more.
 struct DefectLaunch {
     std::uint32_t items = 16, group_items = 16;
+
+    [[nodiscard]] std::uint32_t groups() const { return (items + group_items - 1) / group_items; }
 };
 
 /// A defect of a driver's compiler, reduced to a small kernel (kernels/defects/defects.h, in every language), or a
@@ -25,12 +28,21 @@ struct Defect {
     /// Those to be run: one group of 16 for a reduced kernel; for a stressor 1 to 10^6 items, in groups of several
     /// sizes.
     [[nodiscard]] std::span<const DefectLaunch> launches() const;
-    /// The one of a case without tetrace: one group.
+    /// The usual one of a case without tetrace: one group.
     [[nodiscard]] DefectLaunch case_launch() const;
 };
 
 /// Every reduced kernel and stressor, in the order of kernels/defects/defect_list.inc.
 [[nodiscard]] std::span<const Defect> all_defects();
+
+/// A kernel and its launch.
+struct ChosenDefect {
+    const Defect* defect = nullptr;
+    DefectLaunch launch;
+};
+/// As `dump --defect` names them: "zoo_of_exits" with its case_launch(), or "zoo_of_exits:4096:32", items and those of
+/// a group. Empty if there is no such kernel, or if its launch is larger than any of launches().
+[[nodiscard]] std::optional<ChosenDefect> chosen_defect(std::string_view text);
 
 /// The words that every kernel reads: 0, 1, ... 63.
 [[nodiscard]] std::vector<std::uint32_t> defect_words();

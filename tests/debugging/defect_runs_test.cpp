@@ -98,8 +98,8 @@ TEST(DefectRuns, of_stressors_grow_until_a_launch_is_wrong)
     EXPECT_EQ(runs.front().launch.items, 1'000'000u) << "right at every size";
     const std::string text = defect_report(runs, {}, options).sheet.text();
     EXPECT_TRUE(contains(text, "SEEN: 1 of 4,096 items")) << text;
-    EXPECT_TRUE(contains(text, ", of 4,096 in groups of 32")) << text;
-    EXPECT_TRUE(contains(text, "Reports of the kind: ROCm#1182")) << text;
+    EXPECT_TRUE(contains(text, "(dump --defect zoo_of_exits:4096:32)")) << text;
+    EXPECT_TRUE(contains(text, "ROCm#1182")) << text;
     options.defects = true;
     EXPECT_EQ(run_defects(options, {&driver}).size(), all_defects().size());
 }
