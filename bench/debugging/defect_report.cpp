@@ -394,14 +394,17 @@ CheckVerdict verdict_on(const std::vector<DefectRun>& runs)
 {
     std::set<std::string> devices;
     std::size_t ran = 0;
+    const bool stresses = std::ranges::any_of(runs, [](const DefectRun& run) { return run.defect->is_stressor; });
     for (const DefectRun& run : runs)
         if (finding_of(run)) {
             devices.insert(label_of(run.backend, run.device_index));
             ++ran;
         }
-    return verdict_by_expectations(fmt::format("{} on {}", counted(ran, "reduced kernel", "reduced kernels"),
-                                               counted(devices.size(), "device", "devices")),
-                                   deviations_of(runs));
+    return verdict_by_expectations(
+        fmt::format("{} on {}",
+                    counted(ran, stresses ? "kernel" : "reduced kernel", stresses ? "kernels" : "reduced kernels"),
+                    counted(devices.size(), "device", "devices")),
+        deviations_of(runs));
 }
 
 } // namespace

@@ -66,7 +66,7 @@ TEST_P(Case, of_a_reduced_kernel_shows_the_defect_exactly_where_check_sees_it)
         row.resize(row.find('\n'));
         const bool is_seen = row.starts_with(name + ",seen");
         if (defect.is_stressor && !is_seen && name != "zoo_of_exits") continue; // one that is right is enough
-        const auto launch = row.find(name + ":"); // the one that was wrong
+        const auto launch = row.find(name + ":");                               // the one that was wrong
         const auto end = row.find(')', launch);
         ASSERT_EQ(dump("--defect " + (launch == std::string::npos ? name : row.substr(launch, end - launch))).code, 0);
         EXPECT_EQ(run_case("case"), is_seen ? 1 : 0) << defect.name << file("found.txt") << check.out;
