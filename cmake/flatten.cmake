@@ -64,4 +64,10 @@ function(flatten file result)
 endfunction()
 
 flatten(${ENTRY} text)
-file(WRITE ${OUTPUT} "${text}")
+set(old "")
+if(EXISTS ${OUTPUT})
+  file(READ ${OUTPUT} old)
+endif()
+if(NOT "${text}" STREQUAL "${old}") # else what is made of it is not made again
+  file(WRITE ${OUTPUT} "${text}")
+endif()

@@ -178,14 +178,15 @@ std::vector<std::uint32_t> DriverBackend::probe(std::size_t device, MathMode mat
                     static_cast<std::uint32_t>(operations.size()), probe_block_threads, "the self-test");
 }
 
-std::vector<std::uint32_t> DriverBackend::run_defect(std::size_t device, std::string_view name)
+std::vector<std::uint32_t> DriverBackend::run_defect(std::size_t device, std::string_view name,
+                                                     const DefectLaunch& launch)
 {
     const Found& here = require(device);
     OpenDevice opened(here.driver.driver, ordinal_of(here.driver.driver, device));
     const LoadedProgram program = load_program(opened.context, opened.capability, here.programs, {"defects"}, {});
     const auto words = defect_words();
     return words_of(opened, program.module.function("run_" + std::string(name)), std::as_bytes(std::span(words)),
-                    defect_items, defect_items, std::string(name));
+                    launch.items, launch.group_items, std::string(name));
 }
 
 CompiledCode DriverBackend::compiled(std::size_t device, const std::optional<KernelId>& kernel,

@@ -35,7 +35,8 @@ public:
     [[nodiscard]] CompiledCode compiled(std::size_t device, const std::optional<KernelId>& kernel,
                                         bool starts_outside) const override;
     [[nodiscard]] bool runs_defects() const override { return true; }
-    [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name) override;
+    [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name,
+                                                        const DefectLaunch& launch) override;
     [[nodiscard]] std::vector<KernelFile> kernel_files(const KernelId& kernel) const override;
 
 private:

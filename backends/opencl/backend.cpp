@@ -80,9 +80,10 @@ public:
     }
 
     [[nodiscard]] bool runs_defects() const override { return true; }
-    [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name) override
+    [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name,
+                                                        const DefectLaunch& launch) override
     {
-        return opencl::run_defect(*context(device, 0), name);
+        return opencl::run_defect(*context(device, 0), name, launch);
     }
 
     [[nodiscard]] std::vector<KernelFile> kernel_files(const KernelId& kernel) const override
@@ -95,9 +96,10 @@ public:
     {
         return opencl::tile_case(device, kernel, scene, launch, rays);
     }
-    [[nodiscard]] std::optional<LaunchCase> defect_case(std::string_view name) const override
+    [[nodiscard]] std::optional<LaunchCase> defect_case(std::string_view name,
+                                                        const DefectLaunch& launch) const override
     {
-        return opencl::defect_case(name);
+        return opencl::defect_case(name, launch);
     }
 
 private:

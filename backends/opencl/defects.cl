@@ -1,4 +1,4 @@
-// The reduced kernels as an OpenCL program: an entry for each, run_<name>.
+// A reduced kernel as an OpenCL program; DEFECT is its name, from outside.
 #include "kernels/language/dialect_opencl.h"
 
 #define DEFECT_WORDS __global const uint *restrict words,
@@ -6,10 +6,9 @@
 #define WORD(index) words[index]
 #include "kernels/defects/defects.h"
 
-#define DEFECT(name)                                                                                                   \
-    __kernel void run_##name(__global const uint* restrict words, __global uint* restrict results)                     \
-    {                                                                                                                  \
-        uint item = (uint)get_global_id(0);                                                                            \
-        results[item] = name(words, item);                                                                             \
-    }
-#include "kernels/defects/defect_list.inc"
+__kernel void run_defect(__global const uint* restrict words, __global uint* restrict results, uint count)
+{
+    uint item = (uint)get_global_id(0);
+    if (item >= count) return;
+    results[item] = DEFECT(words, item);
+}

@@ -1,8 +1,7 @@
 #include "backends/opencl/launch_case.h"
 
 #include "backends/opencl/kernels.h"
-#include "backends/opencl/program.h"
-#include "core/device/defects.h"
+#include "backends/opencl/probe.h"
 #include "core/device/scene_buffers.h"
 
 #include <algorithm>
@@ -11,7 +10,8 @@ namespace tetrace::opencl {
 
 namespace {
 
-LaunchCase case_of(const FoundDevice& device, const ProgramId& id, const std::string& entry, unsigned items)
+LaunchCase case_of(const FoundDevice& device, const ProgramId& id, const std::string& entry, unsigned items,
+                   std::uint32_t groups = 1)
 {
     const auto text = [](std::string_view name) {
         const EmbeddedKernel* const kernel = find_kernel(embedded_kernels(), name);
@@ -22,7 +22,8 @@ LaunchCase case_of(const FoundDevice& device, const ProgramId& id, const std::st
     made.program = {id.source + ".cl", "the program, OpenCL C with its includes resolved", {}, text(id.source)};
     made.host = {"run_case.c", "a host in C, whose head explains case.txt",
                  "cc -O1 -o run_case run_case.c -l:libOpenCL.so.1 && ./run_case", text("run_case")};
-    made.lines = {"options " + build_options(device, id), "entry " + entry, "items " + std::to_string(items)};
+    made.lines = {"options " + build_options(device, id), "entry " + entry, "items " + std::to_string(items),
+                  "groups " + std::to_string(groups)};
     return made;
 }
 
@@ -63,12 +64,13 @@ LaunchCase tile_case(const Device& device, const KernelId& kernel, const PackedS
     return made;
 }
 
-LaunchCase defect_case(std::string_view name)
+LaunchCase defect_case(std::string_view name, const DefectLaunch& launch)
 {
     const FoundDevice any;
-    LaunchCase made = case_of(any, {"defects"}, "run_" + std::string(name), defect_items);
+    LaunchCase made = case_of(any, defect_program(name), "run_defect", launch.group_items, launch.groups());
     const auto words = defect_words();
-    made.inputs = {input("buffer", 0, "words", "what the kernel reads", std::span(words))};
+    made.inputs = {input("buffer", 0, "words", "what the kernel reads", std::span(words)),
+                   input("value", 2, "count", "the number of items", std::span(&launch.items, 1))};
     made.output = 1;
     return made;
 }

@@ -1,6 +1,5 @@
 #include "backends/opencl/probe.h"
 
-#include "backends/opencl/program.h"
 #include "core/device/defects.h"
 #include "core/device/yardstick.h"
 
@@ -27,22 +26,29 @@ std::vector<std::uint32_t> run_probe(Context& context, MathMode math, std::span<
     return results;
 }
 
-std::vector<std::uint32_t> run_defect(Context& context, std::string_view name)
+ProgramId defect_program(std::string_view name)
 {
-    std::vector<std::uint32_t> results(defect_items);
+    return {.source = "defects", .defines = "-DDEFECT=" + std::string(name)};
+}
+
+std::vector<std::uint32_t> run_defect(Context& context, std::string_view name, const DefectLaunch& launch)
+{
+    std::vector<std::uint32_t> results(launch.items);
     const auto words = defect_words();
     const ProgramCache none({});
-    const Program program(context, {"defects"}, none);
+    const Program program(context, defect_program(name), none);
     const std::size_t read_bytes = words.size() * sizeof(words[0]), written_bytes = results.size() * sizeof(results[0]);
     context.run("running " + std::string(name), read_bytes + written_bytes, [&] {
         const cl::CommandQueue queue = context.make_queue();
         const cl::Buffer from(context.handle(), CL_MEM_READ_ONLY, read_bytes);
         const cl::Buffer to(context.handle(), CL_MEM_READ_WRITE, written_bytes);
         queue.enqueueWriteBuffer(from, CL_TRUE, 0, read_bytes, words.data());
-        cl::Kernel kernel(program.handle(), ("run_" + std::string(name)).c_str());
+        cl::Kernel kernel(program.handle(), "run_defect");
         kernel.setArg(0, from);
         kernel.setArg(1, to);
-        queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(defect_items), cl::NDRange(defect_items));
+        kernel.setArg(2, launch.items);
+        const cl::NDRange group(launch.group_items), all(launch.groups() * launch.group_items);
+        queue.enqueueNDRangeKernel(kernel, cl::NullRange, all, group);
         queue.enqueueReadBuffer(to, CL_TRUE, 0, written_bytes, results.data());
     });
     return results;

@@ -36,13 +36,13 @@ namespace {
 
 /// Runs a reduced kernel (core/device/defects.h), as the compiler of this build made it. Throws Error{internal}
 /// where there is none of that name.
-std::vector<std::uint32_t> words_of_defect(std::string_view name)
+std::vector<std::uint32_t> words_of_defect(std::string_view name, std::uint32_t items)
 {
     const auto words = defect_words();
-    std::vector<std::uint32_t> results(defect_items);
+    std::vector<std::uint32_t> results(items);
 #define DEFECT(kernel)                                                                                                 \
     if (name == #kernel) {                                                                                             \
-        for (std::uint32_t item = 0; item < defect_items; ++item)                                                      \
+        for (std::uint32_t item = 0; item < items; ++item)                                                             \
             results[item] = kernel(words.data(), item);                                                                \
         return results;                                                                                                \
     }
@@ -106,9 +106,10 @@ public:
     }
 
     [[nodiscard]] bool runs_defects() const override { return true; }
-    [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t, std::string_view name) override
+    [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t, std::string_view name,
+                                                        const DefectLaunch& launch) override
     {
-        return words_of_defect(name);
+        return words_of_defect(name, launch.items);
     }
 
 private:

@@ -59,9 +59,10 @@ public:
     }
 
     [[nodiscard]] bool runs_defects() const override { return true; }
-    [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name) override
+    [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name,
+                                                        const DefectLaunch& launch) override
     {
-        return vulkan::run_defect(vulkan::Context(found().devices.at(device)), name);
+        return vulkan::run_defect(vulkan::Context(found().devices.at(device)), name, launch);
     }
 
     [[nodiscard]] std::vector<KernelFile> kernel_files(const KernelId& kernel) const override
@@ -74,9 +75,10 @@ public:
     {
         return vulkan::tile_case(device, kernel, scene, launch, rays);
     }
-    [[nodiscard]] std::optional<LaunchCase> defect_case(std::string_view name) const override
+    [[nodiscard]] std::optional<LaunchCase> defect_case(std::string_view name,
+                                                        const DefectLaunch& launch) const override
     {
-        return vulkan::defect_case(name);
+        return vulkan::defect_case(name, launch);
     }
 
     [[nodiscard]] bool shows_code() const override { return true; }

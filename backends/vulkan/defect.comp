@@ -3,7 +3,7 @@
 // glslangValidator -V --target-env vulkan1.1 -DDEFECT=<name>.
 #include "kernels/language/dialect_glsl.h"
 
-layout(local_size_x = 16) in;
+layout(local_size_x = 16, local_size_x_id = 0) in;
 layout(std430, set = 0, binding = 0) readonly buffer Words
 {
     uint words[];
@@ -21,5 +21,6 @@ layout(std430, set = 0, binding = 1) writeonly buffer Results
 void main()
 {
     uint item = gl_GlobalInvocationID.x;
+    if (item >= uint(results.length())) return;
     results[item] = DEFECT(item);
 }

@@ -2,7 +2,6 @@
 
 #include "backends/vulkan/kernels.h"
 #include "backends/vulkan/session.h"
-#include "core/device/defects.h"
 
 #include <array>
 
@@ -23,14 +22,14 @@ std::string code_of(std::span<const EmbeddedKernel> kernels, std::string_view na
     return std::string(kernel->text());
 }
 
-LaunchCase case_of(std::span<const EmbeddedKernel> kernels, const std::string& name)
+LaunchCase case_of(std::span<const EmbeddedKernel> kernels, const std::string& name, std::uint32_t groups = 1)
 {
     LaunchCase made;
     made.program = {name + ".spv", "the program, SPIR-V", {}, code_of(kernels, name)};
     made.host = {"run_case.c", "a host in C, whose head explains case.txt",
                  "cc -O1 -o run_case run_case.c -l:libvulkan.so.1 && ./run_case",
                  code_of(vulkan_defects::embedded_kernels(), "run_case")};
-    made.lines = {"entry main"};
+    made.lines = {"entry main", "groups " + std::to_string(groups)};
     return made;
 }
 
@@ -78,9 +77,10 @@ LaunchCase tile_case(const Device& device, const KernelId& kernel, const PackedS
     return made;
 }
 
-LaunchCase defect_case(std::string_view name)
+LaunchCase defect_case(std::string_view name, const DefectLaunch& launch)
 {
-    LaunchCase made = case_of(vulkan_defects::embedded_kernels(), std::string(name));
+    LaunchCase made = case_of(vulkan_defects::embedded_kernels(), std::string(name), launch.groups());
+    made.lines.push_back("constant 0 " + std::to_string(launch.group_items));
     const auto words = defect_words();
     made.inputs = {case_input("buffer 0", "words", "what the kernel reads", std::as_bytes(std::span(words)))};
     made.output = 1;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/device/defects.h"
 #include "core/device/launch.h"
 
 #include <span>
@@ -12,6 +13,6 @@ namespace tetrace::vulkan {
                                    const LaunchParams& launch, std::span<const Quad> rays);
 
 /// Backend::defect_case().
-[[nodiscard]] LaunchCase defect_case(std::string_view name);
+[[nodiscard]] LaunchCase defect_case(std::string_view name, const DefectLaunch& launch);
 
 } // namespace tetrace::vulkan

@@ -1,7 +1,6 @@
 #include "backends/vulkan/probe.h"
 
 #include "backends/vulkan/program.h"
-#include "core/device/defects.h"
 #include "core/device/yardstick.h"
 
 namespace tetrace::vulkan {
@@ -52,15 +51,17 @@ namespace vulkan_defects {
 
 namespace vulkan {
 
-std::vector<std::uint32_t> run_defect(const Context& context, std::string_view name)
+std::vector<std::uint32_t> run_defect(const Context& context, std::string_view name, const DefectLaunch& launch)
 {
-    std::vector<std::uint32_t> results(defect_items);
+    std::vector<std::uint32_t> results(launch.items);
     const auto words = defect_words();
     const std::span<std::byte> result_bytes = std::as_writable_bytes(std::span(results));
     const auto word_bytes = std::as_bytes(std::span(words));
     context.run("running " + std::string(name), word_bytes.size() + result_bytes.size(), [&] {
-        const ProgramId id{
-            .name = std::string(name), .bindings = {0, 1}, .kernels = vulkan_defects::embedded_kernels()};
+        const ProgramId id{.name = std::string(name),
+                           .bindings = {0, 1},
+                           .tile_height = launch.group_items, // the constant that is the size of groups
+                           .kernels = vulkan_defects::embedded_kernels()};
         const Program program(context, id, ProgramCache({}));
         const Buffer from(context, word_bytes.size(), BufferUse::device);
         const Buffer to(context, result_bytes.size(), BufferUse::device);
@@ -72,7 +73,7 @@ std::vector<std::uint32_t> run_defect(const Context& context, std::string_view n
         const vk::raii::CommandBuffer commands = context.make_commands();
         commands.begin({});
         program.record(commands);
-        commands.dispatch(1, 1, 1);
+        commands.dispatch(launch.groups(), 1, 1);
         record_barrier(context, commands);
         commands.end();
         context.submit(commands);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "backends/vulkan/context.h"
+#include "core/device/defects.h"
 #include "core/pack/packed_scene.h"
 
 #include <cstdint>
@@ -25,7 +26,8 @@ namespace tetrace::vulkan {
 namespace tetrace::vulkan {
 
 /// Compiles and runs a reduced kernel (core/device/defects.h). Throws Error if the device fails.
-[[nodiscard]] std::vector<std::uint32_t> run_defect(const Context& context, std::string_view name);
+[[nodiscard]] std::vector<std::uint32_t> run_defect(const Context& context, std::string_view name,
+                                                    const DefectLaunch& launch);
 
 /// Copy bandwidth of the device's memory and caches by vkCmdCopyBuffer and timestamps (core/device/yardstick.h),
 /// buffers of 512 MiB at most, less where one may not be that large, bytes read and written; and the median time of an

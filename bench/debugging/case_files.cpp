@@ -40,8 +40,7 @@ DumpedCase files_of_case(const LaunchCase& launch, const CaseOutput& output, con
                                        build.commit, launch.program.name);
     for (const std::string& line : launch.lines)
         manifest += line + "\n";
-    manifest += "groups 1\n";
-    DumpedCase made{title, {{"case.txt", "one work-group of a launch, line by line", {}, {}}, launch.host}};
+    DumpedCase made{title, {{"case.txt", "the launch, line by line", {}, {}}, launch.host}};
     made.files.push_back(launch.program);
     for (const LaunchCase::Input& input : launch.inputs) {
         manifest += fmt::format("{} {}\n", input.line, input.file.name);
@@ -71,14 +70,15 @@ DumpedCase files_of_case(const LaunchCase& launch, const CaseOutput& output, con
 
 DumpedCase defect_case(const Backend& backend, std::string_view name)
 {
-    const auto launch = backend.defect_case(name);
+    const ChosenDefect chosen = chosen_defect(name).value();
+    const Defect& defect = *chosen.defect;
+    const auto launch = backend.defect_case(defect.name, chosen.launch);
     if (!launch) refuse_case(backend);
-    const Defect& defect = *std::ranges::find(all_defects(), name, &Defect::name);
     CaseOutput output;
-    for (std::uint32_t item = 0; item < defect_items; ++item)
-        output.expected.push_back(defect.expected(item));
+    output.expected = expected_words(defect, chosen.launch.items);
     return files_of_case(*launch, output,
-                         fmt::format("{} on {}: {}; known in {}", name, backend.name(), defect.what, defect.known));
+                         fmt::format("{} on {}: {}; {} {}", name, backend.name(), defect.what,
+                                     defect.is_stressor ? "reports of the kind:" : "known in", defect.known));
 }
 
 /// The device for which a case is written.
@@ -152,7 +152,7 @@ DumpedCase tile_case(const Options& options, const Backend& backend)
     if (one_kernel(options).math != MathMode::exact)
         throw Error(ErrorKind::usage, "dump: a case is of math mode exact: in fast, every driver may have other hits");
     const RowKey key = expecting_row(options);
-    if (!backend.defect_case(all_defects().front().name)) refuse_case(backend);
+    if (!backend.defect_case(all_defects().front().name, {})) refuse_case(backend);
     const Device target = case_target(options, backend);
     SceneWork scene = load_work(scene_requests(options).front(), options);
     RowRun row = open_row(key, scene, options);

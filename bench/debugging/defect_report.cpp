@@ -19,7 +19,7 @@ namespace {
 
 void judge(DefectRun& run, const std::vector<std::uint32_t>& words)
 {
-    run.wrong = wrong_items(*run.defect, words);
+    run.wrong = wrong_items(*run.defect, run.launch.items, words);
     if (run.wrong.empty()) return;
     run.sight = DefectSight::seen;
     if (run.wrong.front() < words.size()) run.first_word = words[run.wrong.front()];
@@ -29,7 +29,11 @@ void run_on(DefectRun& run, Backend& runner)
 {
     const Stopwatch watch;
     try {
-        judge(run, runner.run_defect(run.device_index, run.defect->name));
+        for (const DefectLaunch& launch : run.defect->launches()) {
+            run.launch = launch;
+            judge(run, runner.run_defect(run.device_index, run.defect->name, launch));
+            if (run.sight == DefectSight::seen) break;
+        }
     } catch (const Error& error) {
         if (error.kind() == ErrorKind::interrupted) throw;
         run.sight = DefectSight::error;
@@ -40,6 +44,11 @@ void run_on(DefectRun& run, Backend& runner)
         run.reason = printable_text(error.what());
     }
     run.seconds = watch.seconds();
+}
+
+bool is_wanted(const Options& options, const Defect& defect)
+{
+    return defect.is_stressor ? options.stress : options.defects || !options.stress;
 }
 
 /// The devices of the rows that the options select, each once, as a row's key names them.
@@ -92,6 +101,7 @@ std::vector<DefectRun> run_defects(const Options& options, const std::vector<Bac
         Backend& backend = **std::ranges::find(backends, place.backend, &Backend::name);
         if (!backend.runs_defects()) continue; // Embree compiles nothing
         for (const Defect& defect : all_defects()) {
+            if (!is_wanted(options, defect)) continue;
             DefectRun& run = runs.emplace_back();
             run.backend = place.backend;
             run.device_index = place.device;
@@ -148,6 +158,7 @@ std::string label_of(const std::string& backend, std::size_t index)
 struct ShownRun {
     std::string defect, what, known, backend;
     std::uint64_t index = 0, items = 0, wrong = 0;
+    std::uint64_t group_items = 0; ///< of a stressor
     std::string device, type, driver, implementation, outcome;
     std::string detail;    ///< the first wrong word, or the reason; empty if all is well
     bool is_known = false; ///< whether seeing it was expected
@@ -162,6 +173,13 @@ std::string line_or_nothing(const ResultValue& object, const char* key)
     return value ? value->line() : std::string();
 }
 
+/// launch: of a stressor, as `dump --defect` has it.
+std::string wrong_text(std::uint64_t item, std::uint64_t word, std::uint64_t expected, const std::string& launch)
+{
+    return fmt::format("item {} returns {} instead of {}", item, word, expected) +
+           (launch.empty() ? "" : " (dump --defect " + launch + ")");
+}
+
 ShownRun read_run(const ResultValue& value)
 {
     ShownRun run;
@@ -171,6 +189,7 @@ ShownRun read_run(const ResultValue& value)
     run.backend = value.at("backend").line();
     run.index = value.at("device_index").count();
     run.items = value.at("items").count();
+    if (const auto group = value.find("group_items")) run.group_items = group->count();
     run.device = value.at("device").line();
     run.type = value.at("type").line();
     run.driver = line_or_nothing(value, "driver");
@@ -178,17 +197,20 @@ ShownRun read_run(const ResultValue& value)
     run.outcome = value.at("outcome").line();
     run.detail = printable_text(value.text_at("reason"));
     if (!run.is_seen()) return run;
-    run.wrong = value.at("wrong_items").items().size();
+    const auto count = value.find("wrong"); // wrong_items has only the first
+    run.wrong = count ? count->count() : value.at("wrong_items").items().size();
     const ResultValue first = value.at("first_wrong");
-    run.detail = fmt::format("item {} returns {} instead of {}", first.at("item").count(), first.at("word").count(),
-                             first.at("expected").count());
+    const std::string launch =
+        run.group_items == 0 ? "" : fmt::format("{}:{}:{}", run.defect, run.items, run.group_items);
+    run.detail = wrong_text(first.at("item").count(), first.at("word").count(), first.at("expected").count(), launch);
     return run;
 }
 
 std::string cell_text(const ShownRun& run)
 {
     if (!run.is_seen()) return run.outcome;
-    return fmt::format("{}: {} of {} items", run.is_known ? "known" : "SEEN", run.wrong, run.items);
+    return fmt::format("{}: {} of {} items", run.is_known ? "known" : "SEEN", with_commas(run.wrong),
+                       with_commas(run.items));
 }
 
 /// "defect/loop_of_70000_iterations": its name among test cases and deviations.
@@ -217,21 +239,28 @@ std::vector<ShownRun> each_defect(const std::vector<ShownRun>& runs)
     return found;
 }
 
+/// The runs of the first defect: one of each device.
+std::vector<ShownRun> each_device(const std::vector<ShownRun>& runs)
+{
+    std::vector<ShownRun> found;
+    for (const ShownRun& run : runs)
+        if (std::ranges::find(found, run.label(), &ShownRun::label) == found.end()) found.push_back(run);
+    return found;
+}
+
 Table matrix(const std::vector<ShownRun>& runs)
 {
-    std::vector<Column> columns = {{"device", "device"}, {.key = "driver", .title = "driver", .rank = 2}};
-    const auto defects = each_defect(runs);
-    for (const ShownRun& defect : defects)
-        columns.push_back({.key = defect.defect, .title = defect.defect, .coloured = true, .rank = 0});
+    std::vector<Column> columns = {{"kernel", "kernel"}};
+    const auto devices = each_device(runs);
+    for (const ShownRun& device : devices)
+        columns.push_back({.key = device.label(), .title = device.label(), .coloured = true, .rank = 0});
     Table table(columns);
-    std::vector<std::string> shown;
-    for (const ShownRun& first : runs) {
-        if (std::ranges::find(shown, first.label()) != shown.end()) continue;
-        shown.push_back(first.label());
-        std::vector<Cell> cells = {first.label(), text_cell(first.driver)};
-        for (const ShownRun& defect : defects) {
-            const auto run = std::ranges::find_if(
-                runs, [&](const ShownRun& one) { return one.label() == first.label() && one.defect == defect.defect; });
+    for (const ShownRun& defect : each_defect(runs)) {
+        std::vector<Cell> cells = {defect.defect};
+        for (const ShownRun& device : devices) {
+            const auto run = std::ranges::find_if(runs, [&](const ShownRun& one) {
+                return one.label() == device.label() && one.defect == defect.defect;
+            });
             cells.push_back(run == runs.end() ? Cell() : Cell(cell_text(*run)));
         }
         table.add(std::move(cells));
@@ -262,14 +291,17 @@ nlohmann::json run_json(const DefectRun& run)
     nlohmann::json object = {
         {"defect", run.defect->name},       {"what", run.defect->what},         {"known", run.defect->known},
         {"backend", run.backend},           {"device_index", run.device_index}, {"device", run.device.name},
-        {"type", name_of(run.device.kind)}, {"outcome", name_of(run.sight)},    {"items", defect_items}};
+        {"type", name_of(run.device.kind)}, {"outcome", name_of(run.sight)},    {"items", run.launch.items}};
+    if (run.defect->is_stressor) object["group_items"] = run.launch.group_items;
     if (!run.device.driver.empty()) object["driver"] = run.device.driver;
     if (!run.device.implementation.empty()) object["implementation"] = run.device.implementation;
     if (!run.device.library.empty()) object["library"] = run.device.library;
     if (!run.reason.empty()) object["reason"] = run.reason;
     if (run.sight != DefectSight::seen) return object;
     const std::uint32_t item = run.wrong.front();
-    object["wrong_items"] = run.wrong;
+    constexpr std::size_t max_listed = 64;
+    object["wrong_items"] = std::vector(run.wrong.begin(), run.wrong.begin() + std::min(run.wrong.size(), max_listed));
+    object["wrong"] = run.wrong.size();
     object["first_wrong"] = {{"item", item}, {"word", run.first_word}, {"expected", run.defect->expected(item)}};
     return object;
 }
@@ -279,9 +311,11 @@ std::string summary(const std::vector<ShownRun>& runs)
     const auto count = [&](DefectSight sight) {
         return std::ranges::count(runs, std::string(name_of(sight)), &ShownRun::outcome);
     };
-    return fmt::format("{} reduced kernels ran: {} show their defect; {} skipped, {} errors",
-                       count(DefectSight::seen) + count(DefectSight::not_seen), count(DefectSight::seen),
-                       count(DefectSight::skipped), count(DefectSight::error));
+    const bool stresses = std::ranges::any_of(runs, [](const ShownRun& run) { return run.group_items != 0; });
+    return fmt::format(
+        "{} {} ran: {} {}; {} skipped, {} errors", count(DefectSight::seen) + count(DefectSight::not_seen),
+        stresses ? "kernels" : "reduced kernels", count(DefectSight::seen),
+        stresses ? "have wrong results" : "show their defect", count(DefectSight::skipped), count(DefectSight::error));
 }
 
 /// The first wrong word, or the reason; empty if all is well.
@@ -289,7 +323,10 @@ std::string detail_of(const DefectRun& run)
 {
     if (run.sight != DefectSight::seen) return run.reason;
     const std::uint32_t item = run.wrong.front();
-    return fmt::format("item {} returns {} instead of {}", item, run.first_word, run.defect->expected(item));
+    const std::string launch = run.defect->is_stressor
+                                   ? fmt::format("{}:{}:{}", run.defect->name, run.launch.items, run.launch.group_items)
+                                   : "";
+    return wrong_text(item, run.first_word, run.defect->expected(item), launch);
 }
 
 CaseOutcome outcome_of(const DefectRun& run)
@@ -357,14 +394,17 @@ CheckVerdict verdict_on(const std::vector<DefectRun>& runs)
 {
     std::set<std::string> devices;
     std::size_t ran = 0;
+    const bool stresses = std::ranges::any_of(runs, [](const DefectRun& run) { return run.defect->is_stressor; });
     for (const DefectRun& run : runs)
         if (finding_of(run)) {
             devices.insert(label_of(run.backend, run.device_index));
             ++ran;
         }
-    return verdict_by_expectations(fmt::format("{} on {}", counted(ran, "reduced kernel", "reduced kernels"),
-                                               counted(devices.size(), "device", "devices")),
-                                   deviations_of(runs));
+    return verdict_by_expectations(
+        fmt::format("{} on {}",
+                    counted(ran, stresses ? "kernel" : "reduced kernel", stresses ? "kernels" : "reduced kernels"),
+                    counted(devices.size(), "device", "devices")),
+        deviations_of(runs));
 }
 
 } // namespace
@@ -378,8 +418,12 @@ ShownDefects shown_defects(const ResultValue& section)
     ShownDefects shown{{}, all_runs_table(runs)};
     shown.sheet.table(matrix(runs), 0);
     shown.sheet.gap();
+    for (const ShownRun& device : each_device(runs))
+        shown.sheet.line(fmt::format("{}: {}, {}", device.label(), device.device, device.driver));
+    shown.sheet.gap();
     for (const ShownRun& defect : each_defect(runs))
-        shown.sheet.prose(fmt::format("{}: {}. Known in: {}.", defect.defect, defect.what, defect.known));
+        shown.sheet.prose(fmt::format("{}: {}. {}: {}.", defect.defect, defect.what,
+                                      defect.group_items == 0 ? "Known in" : "Reports of the kind", defect.known));
     shown.sheet.gap();
     for (const ShownRun& run : runs)
         if (!run.detail.empty()) shown.sheet.line(fmt::format("{} on {}: {}", run.defect, run.label(), run.detail));

@@ -24,6 +24,7 @@ struct DefectRun {
     std::size_t device_index = 0; ///< in the backend's devices()
     Device device;
     const Defect* defect = nullptr;
+    DefectLaunch launch; ///< the last that ran: the first that was wrong, if one was
     DefectSight sight = DefectSight::not_seen;
     std::vector<std::uint32_t> wrong;     ///< items with another word than the expected one
     std::uint32_t first_word = 0;         ///< what the first of them returned
@@ -33,9 +34,9 @@ struct DefectRun {
     Judged judged;                        ///< simply conforms if it was skipped
 };
 
-/// Runs every reduced kernel on the devices that the options keep, device after device, in the backends that have them.
-/// A device that fails is an error of its run. expectations: of the runs; null: no defect is expected. Throws as
-/// select_rows() does.
+/// Runs every reduced kernel (with Options::stress alone every stressor, with defects and stress both) on the devices
+/// that the options keep, device after device, in the backends that have them. A device that fails is an error of its
+/// run. expectations: of the runs; null: no defect is expected. Throws as select_rows() does.
 [[nodiscard]] std::vector<DefectRun> run_defects(const Options& options,
                                                  const std::vector<Backend*>& backends = all_backends(),
                                                  const Expectations* expectations = nullptr);
@@ -57,9 +58,9 @@ struct ShownDefects {
 /// the key that is missing or of another kind.
 [[nodiscard]] ShownDefects shown_defects(const ResultValue& section);
 
-/// Drivers against defects: a line a device, a column a defect; what each defect is, and the first wrong word of each
-/// that was seen. missing: sentences on backends without a device. expectations: those that the runs were judged by;
-/// may be null.
+/// Defects against drivers: a line per defect, a column per device; what each defect is, and the first wrong word of
+/// each that was seen. missing: sentences on backends without a device. expectations: those that the runs were judged
+/// by; may be null.
 [[nodiscard]] Report defect_report(const std::vector<DefectRun>& runs, const std::vector<std::string>& missing,
                                    const Options& options, const Expectations* expectations = nullptr);
 

@@ -35,8 +35,7 @@ std::string defect_names()
 
 void set_defect(Options& options, const std::string& text)
 {
-    if (std::ranges::find(all_defects(), text, &Defect::name) == all_defects().end())
-        reject_value("--defect", text, defect_names());
+    if (!chosen_defect(text)) reject_value("--defect", text, defect_names() + ", or NAME:ITEMS:GROUP");
     options.defect = text;
 }
 
@@ -74,7 +73,8 @@ std::vector<OptionRow> trace_options()
     return {
         {"Ray", "--defect", "NAME",
          "Write a case of this reduced kernel of a compiler defect: " + defect_names() +
-             ". Default: files of the kernel of --method and --layout, or with --scene a case of it.",
+             "; or NAME:ITEMS:GROUP, with another number of items, and of those of a group. Default: files of the "
+             "kernel of --method and --layout, or with --scene a case of it.",
          bit(Verb::dump), false, set_defect},
         {"Ray", "--view", "N", "The view of the camera set, numbered from 0. Default: 0.", with_ray, false,
          [](Options& o, const std::string& v) { o.views = fmt::format("{}", parse_count("--view", v, 0, 1u << 30)); },

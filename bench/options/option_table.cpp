@@ -376,6 +376,10 @@ std::vector<OptionRow> judging_options()
          "driver shows one (docs/debugging.md).",
          bit(Verb::check), false, set(&Options::defects),
          usual_for(every_verb, "known compiler defects instead of rows")},
+        {"Judging", "--stress", "",
+         "Run stressors instead of rows: small kernels in forms in which compilers have been wrong, at 1 to 1,000,000 "
+         "items. With --defects, both. Exits with 1 if a result is wrong.",
+         bit(Verb::check), false, set(&Options::stress)},
         {"Judging", "--tolerance", "PERCENT",
          "The difference in time that does not matter, in percent, 0 to 100. A row that is SLOWER by more is a "
          "regression; a row whose whole interval is within it is the SAME. Default: 3.",

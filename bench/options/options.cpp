@@ -184,8 +184,9 @@ void check_together(const Options& options)
     check_single(options, "--divisions", options.divisions.size());
     check_single(options, "--switches", options.switches.size());
     require_views(options);
-    if (options.defects && !shard_of(options).is_whole())
-        throw Error(ErrorKind::usage, "--defects takes only seconds and cannot be sharded; leave out --shard");
+    if ((options.defects || options.stress) && !shard_of(options).is_whole())
+        throw Error(ErrorKind::usage, std::string(options.defects ? "--defects" : "--stress") +
+                                          " takes only seconds and cannot be sharded; leave out --shard");
     if (options.brief && !options.columns.empty())
         throw Error(ErrorKind::usage, "--columns: --brief has columns of its own; leave one of them out");
     if (options.verb == Verb::trace) check_ray(options);

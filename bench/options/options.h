@@ -175,6 +175,7 @@ struct Options {
     std::vector<std::string> required; ///< backends that must have a usable device; of `inspect`, targets to be asked
     bool allow_flawed = false;
     bool defects = false;                                ///< of `check`: reduced kernels in place of rows
+    bool stress = false;                                 ///< of `check`: stressors in place of rows
     unsigned repeat = 1;                                 ///< of `check`: how often rows are checked
     std::vector<std::filesystem::path> expected;         ///< of `check`: files and folders of expectations
     std::optional<std::filesystem::path> write_expected; ///< of `check`: file or folder of what it showed

@@ -9,6 +9,7 @@ template <class AnyTest, class Visit>
 void each_finding(AnyTest& test, const Visit& visit)
 {
     visit("contracts", test.contracts);
+    visit("reassociates", test.reassociates);
     visit("denormals_kept", test.denormals_kept);
     visit("division_ulps", test.division_ulps);
     visit("square_root_ulps", test.square_root_ulps);

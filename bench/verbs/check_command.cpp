@@ -257,10 +257,12 @@ void require_whole_rows(const Options& options)
                "leave one of them out");
     if (options.repeat > 1 && options.resume)
         reject("--repeat: a journal has each view once, so repetitions cannot be resumed; leave out --resume");
-    if (options.defects && (options.resume || options.picture_folder || options.allow_flawed))
-        reject("--defects runs small kernels, and no rows; leave out --resume, --differences and --allow-flawed");
-    if (options.repeat > 1 && options.defects)
-        reject("--repeat repeats rows, and --defects has none; leave one of them out");
+    const bool has_rows = !options.defects && !options.stress;
+    if (!has_rows && (options.resume || options.picture_folder || options.allow_flawed))
+        reject("--defects and --stress run small kernels, and no rows; leave out --resume, --differences and "
+               "--allow-flawed");
+    if (options.repeat > 1 && !has_rows)
+        reject("--repeat repeats rows, and --defects and --stress have none; leave one of them out");
     if (options.repeat > 1 && is_shard) reject("--repeat: shards have no repetitions; leave out --shard");
     if (is_shard && (!options.expected.empty() || options.write_expected))
         reject("--expect and --write-expect are about whole rows, and a shard has some of their views; leave out "
@@ -274,7 +276,7 @@ int check_command(const Options& asked)
     const Options options = with_default_layouts(asked);
     if (options.list) return list_selected(options);
     require_whole_rows(options);
-    if (options.defects) return check_defects(options);
+    if (options.defects || options.stress) return check_defects(options);
     check_output(options);
     const StopWhenInterrupted stop;
     if (options.junit || options.out) something_to_keep(); // also where a CI's time ends before the first view

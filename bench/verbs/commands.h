@@ -42,7 +42,7 @@ void complete(BenchResult& result, const Options& options);
 void require_judged(const std::vector<RowRecord>& rows, const CheckJudgement& judgement,
                     const std::vector<std::string>& backends);
 
-/// `check --defects`. options: with the default layouts of check.
+/// `check --defects` and `check --stress`. options: with the default layouts of check.
 int check_defects(const Options& options);
 
 /// Throws Error{missing} naming the first backend of the list without a usable device, with the reason.

@@ -19,6 +19,7 @@
 
 namespace tetrace {
 
+struct DefectLaunch; // core/device/defects.h
 struct LaunchParams; // core/device/launch.h
 
 /// Where a launch's jobs write their results in its output: each job between GUARD_WORDS of its own before and after
@@ -288,8 +289,11 @@ public:
     {
         return std::nullopt;
     }
-    /// The launch of the reduced kernel of that name (core/device/defects.h). Empty if there is no host for the API.
-    [[nodiscard]] virtual std::optional<LaunchCase> defect_case(std::string_view) const { return std::nullopt; }
+    /// One group of the reduced kernel of that name (core/device/defects.h). Empty if there is no host for the API.
+    [[nodiscard]] virtual std::optional<LaunchCase> defect_case(std::string_view, const DefectLaunch&) const
+    {
+        return std::nullopt;
+    }
     /// Whether compiled() shows the code itself, of drivers that do.
     [[nodiscard]] virtual bool shows_code() const { return false; }
     /// What the device's driver made of a kernel, as sessions compile it for a GPU. The device need not be usable:
@@ -301,7 +305,8 @@ public:
     /// Whether run_defect() runs the reduced kernels of core/device/defects.h.
     [[nodiscard]] virtual bool runs_defects() const { return false; }
     /// Compiles the reduced kernel of that name and runs it; returns a word for each item. Throws Error as open() does.
-    [[nodiscard]] virtual std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name);
+    [[nodiscard]] virtual std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name,
+                                                                const DefectLaunch& launch);
     /// Ends the processes of drivers, if they have some, so that the next sessions have drivers in a new state. No
     /// session may be open.
     virtual void restart() {}

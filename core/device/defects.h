@@ -2,29 +2,56 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
 namespace tetrace {
 
-/// A defect of a driver's compiler, reduced to a small kernel (kernels/defects/defects.h, in every language). The
-/// kernel is one work group of defect_items items; each returns a word.
+/// How many items a kernel has, and how many of them are a work group; the last group may have more.
+struct DefectLaunch {
+    std::uint32_t items = 16, group_items = 16;
+
+    [[nodiscard]] std::uint32_t groups() const { return (items + group_items - 1) / group_items; }
+};
+
+/// A defect of a driver's compiler, reduced to a small kernel (kernels/defects/defects.h, in every language), or a
+/// stressor (kernels/defects/stressors.h). Each item returns a word.
 struct Defect {
     std::string_view name;  ///< of its kernel
     std::string_view what;  ///< what the kernel does
-    std::string_view known; ///< where the defect was met
+    std::string_view known; ///< where the defect was met; of a stressor, public reports of its kind
     std::uint32_t (*expected)(std::uint32_t item);
-};
-inline constexpr std::uint32_t defect_items = 16;
+    bool is_stressor = false;
 
-/// Every reduced kernel, in the order of kernels/defects/defect_list.inc.
+    /// Those to be run: one group of 16 for a reduced kernel; for a stressor 1 to 10^6 items, in groups of several
+    /// sizes.
+    [[nodiscard]] std::span<const DefectLaunch> launches() const;
+    /// The usual one of a case without tetrace: one group.
+    [[nodiscard]] DefectLaunch case_launch() const;
+};
+
+/// Every reduced kernel and stressor, in the order of kernels/defects/defect_list.inc.
 [[nodiscard]] std::span<const Defect> all_defects();
+
+/// A kernel and its launch.
+struct ChosenDefect {
+    const Defect* defect = nullptr;
+    DefectLaunch launch;
+};
+/// As `dump --defect` names them: "zoo_of_exits" with its case_launch(), or "zoo_of_exits:4096:32", items and those of
+/// a group. Empty if there is no such kernel, or if its launch is larger than any of launches().
+[[nodiscard]] std::optional<ChosenDefect> chosen_defect(std::string_view text);
 
 /// The words that every kernel reads: 0, 1, ... 63.
 [[nodiscard]] std::vector<std::uint32_t> defect_words();
 
-/// The items whose word is not the expected one; all of them where the number of words is not defect_items.
-[[nodiscard]] std::vector<std::uint32_t> wrong_items(const Defect& defect, std::span<const std::uint32_t> words);
+/// The words of items 0 to items - 1.
+[[nodiscard]] std::vector<std::uint32_t> expected_words(const Defect& defect, std::uint32_t items);
+
+/// The items whose word is not the expected one; all of them if there is not a word for each.
+[[nodiscard]] std::vector<std::uint32_t> wrong_items(const Defect& defect, std::uint32_t items,
+                                                     std::span<const std::uint32_t> words);
 
 } // namespace tetrace

@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/exact.h"
+#include "kernels/layouts/probe_chains.h"
 
 #include <algorithm>
 #include <bit>
@@ -61,6 +62,9 @@ std::vector<Quad> make_operations()
         quads.push_back({PROBE_CONVERT, numbers.word() >> (i % 32), 0, 0});
         quads.push_back({PROBE_INTEGER, numbers.word(), numbers.word(), numbers.word()});
         quads.push_back({PROBE_COPY, numbers.word(), 0, 0});
+        quads.push_back({PROBE_SPLIT, bits(a), 0, 0});
+        quads.push_back({PROBE_CANCEL, bits(a), 0, bits(b)});
+        quads.push_back({PROBE_SCALE, bits(a), 0, 0});
     }
     quads.push_back({PROBE_COMPARE, bits(0.0f), bits(-0.0f), 0});
     for (const std::uint32_t word : {0u, 1u, 0x00FFFFFFu, 0x01000001u, 0x01000003u, 0xFFFFFFFFu})
@@ -75,6 +79,13 @@ std::vector<Quad> make_operations()
     return quads;
 }
 
+/// The high half of Dekker's split.
+float split(float x)
+{
+    const float large = x * 4097.0f;
+    return large - (large - x);
+}
+
 /// What the C++ standard's arithmetic in round-to-nearest gives.
 std::uint32_t expected(const Quad& quad)
 {
@@ -85,6 +96,9 @@ std::uint32_t expected(const Quad& quad)
     case PROBE_ADD: return bits(x + y);
     case PROBE_MULTIPLY: return bits(x * z);
     case PROBE_SQUARE_ROOT: return bits(std::sqrt(x));
+    case PROBE_SPLIT: return bits(split(x));
+    case PROBE_CANCEL: return bits((x + z) - z);
+    case PROBE_SCALE: return bits((x * 3.0f) * 5.0f);
     case PROBE_CONVERT: return bits(static_cast<float>(quad.y));
     case PROBE_COMPARE: return (x < y ? 1u : 0u) + (x <= y ? 2u : 0u) + (x == y ? 4u : 0u);
     case PROBE_INTEGER: return ((quad.y * quad.z + quad.w) >> (quad.w & 31u)) ^ (quad.y << (quad.z & 31u));
@@ -123,6 +137,12 @@ void judge(SelfTest& test, const Quad& quad, std::uint32_t result)
         else
             test.sums_right = test.sums_right && same;
         break;
+    case PROBE_SPLIT:
+        // Contraction, which the first operation shows, gives x too.
+        if (!same && !test.contracts) test.reassociates = true;
+        break;
+    case PROBE_CANCEL:
+    case PROBE_SCALE: test.reassociates = test.reassociates || !same; break;
     case PROBE_CONVERT: test.conversions_right = test.conversions_right && same; break;
     case PROBE_COMPARE: test.comparisons_right = test.comparisons_right && same; break;
     case PROBE_INTEGER: test.integers_right = test.integers_right && same; break;
@@ -138,6 +158,7 @@ std::string inexact_text(const SelfTest& test)
         if (applies) text += std::string(text.empty() ? "" : ", ") + what;
     };
     add(test.contracts, "contracts");
+    add(test.reassociates, "reassociates");
     add(!test.sums_right, "sums or products wrong");
     add(!test.comparisons_right, "comparisons wrong");
     add(!test.integers_right, "integers wrong");

@@ -12,6 +12,7 @@ namespace tetrace {
 /// How a device computes in a math mode, measured by kernels/probe.h; recorded with every result.
 struct SelfTest {
     bool contracts = false;             ///< x * y + z is rounded once
+    bool reassociates = false;          ///< (x + z) - z is x: sums or products are not computed as they are written
     bool denormals_kept = true;         ///< false: sums or products flush them to zero
     std::uint32_t division_ulps = 0;    ///< largest error found; 0: correctly rounded
     std::uint32_t square_root_ulps = 0; ///< the same
@@ -26,7 +27,8 @@ struct SelfTest {
     /// Whether decisions can be the same bits as on the host: all of the above except the ulps and the denormals.
     [[nodiscard]] bool is_exact() const
     {
-        return !contracts && sums_right && comparisons_right && integers_right && conversions_right && bits_kept;
+        return !contracts && !reassociates && sums_right && comparisons_right && integers_right && conversions_right &&
+               bits_kept;
     }
     /// Units in the last place by which t, u and v may differ: 0 where division is correctly rounded, else 3.
     [[nodiscard]] std::uint32_t allowed_ulps() const;

@@ -53,7 +53,7 @@ CompiledCode Backend::compiled(std::size_t, const std::optional<KernelId>&, bool
     throw Error(ErrorKind::unsupported, name() + " reports nothing of its code");
 }
 
-std::vector<std::uint32_t> Backend::run_defect(std::size_t, std::string_view)
+std::vector<std::uint32_t> Backend::run_defect(std::size_t, std::string_view, const DefectLaunch&)
 {
     throw Error(ErrorKind::unsupported, name() + " runs no reduced kernels");
 }

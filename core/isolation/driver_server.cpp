@@ -1,8 +1,10 @@
 #include "core/isolation/driver_server.h"
 
+#include "core/device/defects.h"
 #include "core/isolation/channel.h"
 #include "core/isolation/messages.h"
 
+#include <algorithm>
 #include <csignal>
 #include <fstream>
 #include <map>
@@ -62,8 +64,12 @@ private:
             const auto words = backend_->probe(device, math, request.get_all<Quad>());
             answer.put_all(std::span<const std::uint32_t>(words));
         } else if (what == Request::run_defect) {
-            const auto words = backend_->run_defect(device, request.get_text());
-            answer.put_all(std::span<const std::uint32_t>(words));
+            const auto launch = request.get<DefectLaunch>();
+            const auto words = backend_->run_defect(device, request.get_text(), launch);
+            const SharedMemory memory(std::move(file), launch.items * sizeof(words[0]));
+            const auto bytes = std::as_bytes(std::span(words).first(std::min<std::size_t>(words.size(), launch.items)));
+            std::ranges::copy(bytes, memory.bytes().begin());
+            answer.put(std::uint64_t{bytes.size()});
         } else if (what == Request::compiled) {
             const auto has_kernel = request.get<bool>();
             const auto kernel = request.get<KernelId>();

@@ -1,5 +1,6 @@
 #include "core/isolation/isolated_backend.h"
 
+#include "core/device/defects.h"
 #include "core/device/device_facts.h"
 #include "core/device/launch.h"
 
@@ -253,15 +254,22 @@ std::vector<std::uint32_t> IsolatedBackend::probe(std::size_t device, MathMode m
         .get_all<std::uint32_t>();
 }
 
-std::vector<std::uint32_t> IsolatedBackend::run_defect(std::size_t device, std::string_view name)
+std::vector<std::uint32_t> IsolatedBackend::run_defect(std::size_t device, std::string_view name,
+                                                       const DefectLaunch& launch)
 {
     ByteWriter request;
     request.put(Request::run_defect);
     request.put(std::uint64_t{device});
+    request.put(launch);
     request.put_text(name);
-    return child_of(device)
-        ->call({"running the reduced kernel " + std::string(name), request, -1, call_limit_s(0)})
-        .get_all<std::uint32_t>();
+    const SharedMemory memory(launch.items * sizeof(std::uint32_t));
+    const auto bytes = child_of(device)
+                           ->call({"running the reduced kernel " + std::string(name), request, memory.file(),
+                                   call_limit_s(launch.items, memory.bytes().size())})
+                           .get<std::uint64_t>();
+    std::vector<std::uint32_t> words(bytes / sizeof(std::uint32_t));
+    std::ranges::copy(memory.bytes().first(bytes), std::as_writable_bytes(std::span(words)).begin());
+    return words;
 }
 
 CompiledCode IsolatedBackend::compiled(std::size_t device, const std::optional<KernelId>& kernel,

@@ -29,7 +29,8 @@ public:
     [[nodiscard]] CompiledCode compiled(std::size_t device, const std::optional<KernelId>& kernel,
                                         bool starts_outside) const override;
     [[nodiscard]] bool runs_defects() const override { return inner_->runs_defects(); }
-    [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name) override;
+    [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name,
+                                                        const DefectLaunch& launch) override;
 
     /// The device's process, started where there is none. Throws Error{missing} if the device cannot be used,
     /// Error{driver} where it cannot be found again.

@@ -62,3 +62,5 @@ KERNEL_FN uint steps_of_nested_loops(DEFECT_WORDS uint item)
     }
     return walk.steps * 64u + walk.at;
 }
+
+#include "kernels/defects/stressors.h"

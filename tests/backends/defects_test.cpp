@@ -5,22 +5,32 @@
 #include "core/device/backend.h"
 #include "core/device/defects.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <set>
 
 using namespace tetrace;
 
+namespace tetrace::faults {
+// faulty_stressor.cpp
+#define FAULT(number, stressor) std::vector<std::uint32_t> fault_##number(std::uint32_t items);
+TETRACE_FAULTS
+#undef FAULT
+} // namespace tetrace::faults
+
 namespace {
 
 using Words = std::vector<std::uint32_t>;
 
-Words right_words(const Defect& defect)
+constexpr std::uint32_t items = 16;
+
+/// Whether the device returns the right words in every launch.
+bool is_right(Backend& backend, std::size_t device, const Defect& defect)
 {
-    Words words;
-    for (std::uint32_t item = 0; item < defect_items; ++item)
-        words.push_back(defect.expected(item));
-    return words;
+    return std::ranges::all_of(defect.launches(), [&](const DefectLaunch& launch) {
+        return wrong_items(defect, launch.items, backend.run_defect(device, defect.name, launch)).empty();
+    });
 }
 
 /// Without anything expected where there is no file.
@@ -45,9 +55,8 @@ TEST(Defects, are_those_that_each_implementation_is_known_for)
             const Expectation expectation = expectation_of(device.implementation);
             for (const Defect& defect : all_defects()) {
                 const std::string name(defect.name);
-                const bool is_right = wrong_items(defect, backend->run_defect(i, defect.name)).empty();
-                const Judged judged =
-                    judge_defect(&expectation, name, is_right ? DefectFinding::right : DefectFinding::wrong);
+                const Judged judged = judge_defect(
+                    &expectation, name, is_right(*backend, i, defect) ? DefectFinding::right : DefectFinding::wrong);
                 if (!expectation.defects.contains(name)) {
                     skipped += "tests/expected/" + device.implementation + ".json does not say what " + name +
                                " shows; it is " + judged.shown + "\n";
@@ -66,20 +75,37 @@ TEST(Defects, are_those_that_each_implementation_is_known_for)
 TEST(Defects, a_kernels_wrong_items_are_named)
 {
     for (const Defect& defect : all_defects()) {
-        Words words = right_words(defect);
-        EXPECT_EQ(wrong_items(defect, words), Words{}) << defect.name;
+        Words words = expected_words(defect, items);
+        EXPECT_EQ(wrong_items(defect, items, words), Words{}) << defect.name;
         ++words[3];
-        EXPECT_EQ(wrong_items(defect, words), Words{3}) << defect.name;
+        EXPECT_EQ(wrong_items(defect, items, words), Words{3}) << defect.name;
         words.pop_back();
-        EXPECT_EQ(wrong_items(defect, words).size(), defect_items) << "too few words do not count";
+        EXPECT_EQ(wrong_items(defect, items, words).size(), items) << "too few words do not count";
     }
 }
 
 TEST(Defects, expect_other_words_of_most_items)
 {
     for (const Defect& defect : all_defects()) {
-        const Words words = right_words(defect);
-        EXPECT_EQ(std::set<std::uint32_t>(words.begin(), words.end()).size(), defect_items)
+        const Words words = expected_words(defect, items);
+        EXPECT_EQ(std::set<std::uint32_t>(words.begin(), words.end()).size(), items)
             << defect.name << ": items that are mixed up would not be seen";
     }
+}
+
+TEST(Stressors, are_wrong_if_a_compiler_makes_a_fault)
+{
+    std::set<std::string_view> seen;
+    const auto expect_seen = [&](std::string_view name, int number,
+                                 std::vector<std::uint32_t> (*fault)(std::uint32_t)) {
+        const Defect& defect = *std::ranges::find(all_defects(), name, &Defect::name);
+        for (const std::uint32_t count : {64u, 4096u})
+            EXPECT_FALSE(wrong_items(defect, count, fault(count)).empty()) << name << ", fault " << number;
+        seen.insert(name);
+    };
+#define FAULT(number, stressor) expect_seen(#stressor, number, faults::fault_##number);
+    TETRACE_FAULTS
+#undef FAULT
+    for (const Defect& defect : all_defects())
+        EXPECT_EQ(seen.contains(defect.name), defect.is_stressor) << defect.name << ": no fault is tried";
 }

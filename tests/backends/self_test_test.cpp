@@ -2,6 +2,7 @@
 #include "backends/openmp/backend.h"
 #include "core/base/exact.h"
 #include "core/device/self_test.h"
+#include "kernels/layouts/probe_chains.h"
 #include "tests/support/temporary_folder.h"
 
 #include <bit>
@@ -10,6 +11,10 @@
 
 using namespace tetrace;
 using namespace tetrace::test;
+
+namespace tetrace::openmp {
+std::vector<std::uint32_t> probe_unsafe(std::span<const Quad> operations); // probe.cpp with -Ofast
+} // namespace tetrace::openmp
 
 namespace {
 
@@ -53,6 +58,35 @@ TEST(SelfTest, finds_contraction)
     EXPECT_FALSE(test.is_exact());
     EXPECT_TRUE(contains(test.text(), "contracts"));
     EXPECT_TRUE(contains(test.brief(), "contracts"));
+}
+
+TEST(SelfTest, finds_reassociation)
+{
+    const auto shortened = [](const Quad& quad, std::uint32_t) { return quad.y; };
+    for (const std::uint32_t operation : {PROBE_SPLIT, PROBE_CANCEL, PROBE_SCALE}) {
+        const SelfTest test = judged_with(operation, shortened);
+        EXPECT_TRUE(test.reassociates) << operation;
+        EXPECT_FALSE(test.is_exact());
+        EXPECT_EQ(test.brief(), "reassociates");
+    }
+}
+
+TEST(SelfTest, a_build_that_reassociates_is_not_exact)
+{
+    const SelfTest test = judge_self_test(openmp::probe_unsafe(self_test_operations()));
+    EXPECT_TRUE(test.reassociates) << test.text();
+    EXPECT_FALSE(test.contracts) << "only its order of operations is wrong";
+    EXPECT_FALSE(test.is_exact());
+}
+
+TEST(SelfTest, an_opencl_compiler_that_may_reassociate_is_not_exact)
+{
+    Backend* const opencl = find_backend("opencl");
+    if (opencl == nullptr || !opencl->devices().front().usable) GTEST_SKIP() << "there is no OpenCL device here";
+    const SelfTest test = judge_self_test(opencl->probe(0, MathMode::fast, self_test_operations()));
+    if (!opencl->devices().front().implementation.starts_with("pocl")) GTEST_SKIP() << test.text();
+    EXPECT_TRUE(test.reassociates) << test.text();
+    EXPECT_FALSE(test.is_exact());
 }
 
 TEST(SelfTest, measures_division_and_decides_the_tolerance)

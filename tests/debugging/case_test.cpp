@@ -59,11 +59,16 @@ constexpr const char* tile = "--scene cubes --resolution 6 --size 24x20 --pixel 
 TEST_P(Case, of_a_reduced_kernel_shows_the_defect_exactly_where_check_sees_it)
 {
     if (const std::string reason = why_no_host(); !reason.empty()) GTEST_SKIP() << reason;
-    const Ended check = run(std::string("check --defects --format csv --backend ") + GetParam().name);
+    const Ended check = run(std::string("check --defects --stress --format csv --backend ") + GetParam().name);
     for (const Defect& defect : all_defects()) {
-        ASSERT_EQ(dump("--defect " + std::string(defect.name)).code, 0);
-        const std::string row = check.out.substr(check.out.find(std::string(defect.name) + ","));
-        const bool is_seen = row.substr(0, row.find('\n')).starts_with(std::string(defect.name) + ",seen");
+        const std::string name(defect.name);
+        std::string row = check.out.substr(check.out.find(name + ","));
+        row.resize(row.find('\n'));
+        const bool is_seen = row.starts_with(name + ",seen");
+        if (defect.is_stressor && !is_seen && name != "zoo_of_exits") continue; // one that is right is enough
+        const auto launch = row.find(name + ":");                               // the one that was wrong
+        const auto end = row.find(')', launch);
+        ASSERT_EQ(dump("--defect " + (launch == std::string::npos ? name : row.substr(launch, end - launch))).code, 0);
         EXPECT_EQ(run_case("case"), is_seen ? 1 : 0) << defect.name << file("found.txt") << check.out;
     }
 }
@@ -113,7 +118,9 @@ TEST_F(DumpedCases, refuse_what_is_no_case)
     const std::string scene = "--scene cubes --resolution 6 --size 24 ";
     for (const std::string& arguments : std::vector<std::string>{
              "--backend cuda --defect loop_of_70000_iterations", "--backend openmp --pixel 1,1 " + scene,
-             "--backend opencl --defect no_such_defect", "--backend opencl --defect steps_of_nested_loops " + scene,
+             "--backend opencl --defect no_such_defect", "--backend opencl --defect zoo_of_exits:0:1",
+             "--backend opencl --defect zoo_of_exits:64", "--backend opencl --defect loop_of_70000_iterations:64:64",
+             "--backend opencl --defect steps_of_nested_loops " + scene,
              "--backend opencl --defect steps_of_nested_loops --method maria", "--backend opencl --view 0",
              "--backend opencl --resolution 6", "--backend opencl " + scene, "--backend opencl --pixel 24,0 " + scene,
              "--backend opencl --math fast --pixel 1,1 " + scene,

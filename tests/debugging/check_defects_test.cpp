@@ -57,6 +57,22 @@ TEST_F(CheckDefects, needs_no_scene_and_is_good_where_nothing_is_seen)
     EXPECT_TRUE(contains(expecting.out, "openmp.json: defects.loop: no reduced kernel has this name")) << expecting.out;
 }
 
+TEST_F(CheckDefects, stress_runs_stressors_alone_up_to_a_million_items)
+{
+    const Ended ended = run("check --stress --backend openmp --out stress.json --junit stress.xml");
+    EXPECT_EQ(ended.code, 0) << ended.errors;
+    const Json runs = Json::parse(file("stress.json"))["tetrace"]["defects"];
+    ASSERT_GE(runs.size(), 11u);
+    for (const Json& run : runs) {
+        EXPECT_EQ(run["outcome"], "not seen") << run;
+        EXPECT_EQ(run["items"], 1'000'000) << run;
+    }
+    EXPECT_TRUE(contains(ended.out, std::to_string(runs.size()) + " kernels ran: 0 have wrong results")) << ended.out;
+    EXPECT_TRUE(contains(file("stress.xml"), "name=\"defect/zoo_of_exits\""));
+    EXPECT_EQ(run("show stress.json").code, 0);
+    EXPECT_EQ(run("check --stress --resume --out stress.json").code, 2);
+}
+
 TEST_F(CheckDefects, are_not_shared_among_processes)
 {
     const Ended ended = run("check --defects --shard 1/2 --out defects.json");

@@ -3,6 +3,7 @@
 #include "tests/support/fake_backend.h"
 #include "tests/support/temporary_folder.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 using namespace tetrace;
@@ -26,16 +27,17 @@ public:
     }
 
     std::string wrong, fails;
+    std::uint32_t wrong_from = 0; ///< items of a launch
 
     [[nodiscard]] bool runs_defects() const override { return true; }
-    [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t, std::string_view name) override
+    [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t, std::string_view name,
+                                                        const DefectLaunch& launch) override
     {
         if (name == fails) throw Error(ErrorKind::driver, "SIGSEGV");
         for (const Defect& defect : all_defects()) {
             if (defect.name != name) continue;
-            std::vector<std::uint32_t> words;
-            for (std::uint32_t item = 0; item < defect_items; ++item)
-                words.push_back(defect.expected(item) + (name == wrong && item == 5 ? 1 : 0));
+            auto words = expected_words(defect, launch.items);
+            if (name == wrong && launch.items >= wrong_from) ++words[5];
             return words;
         }
         return {};
@@ -43,6 +45,9 @@ public:
 };
 
 constexpr const char* loop = "value_after_divergent_loop";
+
+const auto reduced_count = static_cast<std::size_t>(
+    std::ranges::count_if(all_defects(), [](const Defect& defect) { return !defect.is_stressor; }));
 
 std::vector<DefectRun> runs_of(Driver& driver)
 {
@@ -55,7 +60,7 @@ TEST(DefectRuns, are_one_of_each_defect_and_good_where_none_is_seen)
 {
     Driver driver("good");
     const auto runs = runs_of(driver);
-    EXPECT_EQ(runs.size(), all_defects().size());
+    EXPECT_EQ(runs.size(), reduced_count);
     for (const DefectRun& run : runs)
         EXPECT_EQ(run.sight, DefectSight::not_seen) << run.defect->name;
     EXPECT_EQ(exit_code(runs), 0);
@@ -76,6 +81,27 @@ TEST(DefectRuns, fail_where_one_item_is_wrong_and_name_it)
     const std::string xml = defect_junit(runs);
     EXPECT_TRUE(contains(xml, "failures=\"1\" errors=\"0\"")) << xml;
     EXPECT_TRUE(contains(xml, "classname=\"tetrace.bad.a-device\" name=\"defect/value_after_divergent_loop\"")) << xml;
+}
+
+TEST(DefectRuns, of_stressors_grow_until_a_launch_is_wrong)
+{
+    Driver driver("bad");
+    driver.wrong = "zoo_of_exits";
+    driver.wrong_from = 4096;
+    Options options;
+    options.stress = true;
+    const auto runs = run_defects(options, {&driver});
+    ASSERT_EQ(runs.size(), all_defects().size() - reduced_count);
+    const auto zoo = std::ranges::find(runs, driver.wrong, [](const DefectRun& run) { return run.defect->name; });
+    EXPECT_EQ(zoo->sight, DefectSight::seen);
+    EXPECT_EQ(zoo->launch.items, 4096u);
+    EXPECT_EQ(runs.front().launch.items, 1'000'000u) << "right at every size";
+    const std::string text = defect_report(runs, {}, options).sheet.text();
+    EXPECT_TRUE(contains(text, "SEEN: 1 of 4,096 items")) << text;
+    EXPECT_TRUE(contains(text, "(dump --defect zoo_of_exits:4096:32)")) << text;
+    EXPECT_TRUE(contains(text, "ROCm#1182")) << text;
+    options.defects = true;
+    EXPECT_EQ(run_defects(options, {&driver}).size(), all_defects().size());
 }
 
 TEST(DefectRuns, that_show_what_is_known_pass_and_changes_in_either_direction_fail)
@@ -128,7 +154,7 @@ TEST(DefectRuns, on_nothing_usable_are_skipped_and_no_success)
     Options options;
     options.backends = {"none"};
     const auto runs = run_defects(options, {&driver});
-    ASSERT_EQ(runs.size(), all_defects().size());
+    ASSERT_EQ(runs.size(), reduced_count);
     EXPECT_EQ(runs[0].sight, DefectSight::skipped);
     EXPECT_EQ(exit_code(runs), 3);
     EXPECT_EQ(exit_code(std::vector<DefectRun>()), 3);
@@ -138,5 +164,5 @@ TEST(DefectRuns, leave_out_backends_that_compile_nothing)
 {
     FakeBackend embree("embree", some_device());
     Driver driver("good");
-    EXPECT_EQ(run_defects({}, {&embree, &driver}).size(), all_defects().size());
+    EXPECT_EQ(run_defects({}, {&embree, &driver}).size(), reduced_count);
 }

@@ -44,6 +44,7 @@ const std::map<std::string, std::vector<std::string>> examples = {
     {"A layout of tets", {"half32", "tet64", "tet20", "tet16"}},
     {"A task", {"segments"}},
     {"A backend", {"openmp", "opencl", "vulkan", "cuda", "embree"}},
+    {"A stressor", {"pairs_under_pressure", "zoo_of_exits", "lost_in_products"}},
     {"A column", {"spread", "mrays_per_s"}},
     {"A scene", {"cubes", "bunny", "armadillo"}},
     {"A procedural scene", {"atrium", "city", "terrain", "spheres", "grass", "plant"}},

@@ -159,10 +159,12 @@ public:
         return Yardstick{1e12 / 3, 1e-6 / 3 * options.threads};
     }
     [[nodiscard]] bool runs_defects() const override { return true; }
-    [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name) override
+    [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name,
+                                                        const DefectLaunch& launch) override
     {
         misbehave(std::string(name), "run_defect");
-        return {static_cast<std::uint32_t>(device), static_cast<std::uint32_t>(name.size())};
+        return {static_cast<std::uint32_t>(device), static_cast<std::uint32_t>(name.size()), launch.items,
+                launch.group_items};
     }
 
 private:

@@ -121,20 +121,20 @@ TEST_F(Isolated, backend_has_the_devices_facts_and_abilities_of_the_driver)
     EXPECT_EQ(backend_->yardstick(0, {.threads = 5})->launch_s, 1e-6 / 3 * 5);
     EXPECT_FALSE(backend_->yardstick(1, {}));
     EXPECT_TRUE(backend_->runs_defects());
-    EXPECT_EQ(backend_->run_defect(1, "seven.."), (std::vector<std::uint32_t>{1, 7}));
+    EXPECT_EQ(backend_->run_defect(1, "seven..", {30, 4}), (std::vector<std::uint32_t>{1, 7, 30, 4}));
 }
 
 TEST_F(Isolated, reduced_kernel_that_crashes_its_driver_is_an_error_and_the_next_one_runs)
 {
     try {
-        (void)backend_->run_defect(0, "run_defect abort");
+        (void)backend_->run_defect(0, "run_defect abort", {});
         FAIL() << "it went on";
     } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::driver);
         EXPECT_NE(std::string(error.what()).find("running the reduced kernel run_defect abort"), std::string::npos)
             << error.what();
     }
-    EXPECT_EQ(backend_->run_defect(0, "next").size(), 2u);
+    EXPECT_EQ(backend_->run_defect(0, "next", {}).size(), 4u);
 }
 
 TEST_F(Isolated, sessions_get_and_give_the_same_bits)

@@ -95,6 +95,7 @@ constexpr Wrong wrong_usages[] = {
     {"bench --columns mrays", 2, "--columns: no table has the column 'mrays'; accepted: row, "},
     {"bench --backend openmp --junit - --benchmark_format=json", 2, "--junit -: --benchmark_format writes to "},
     {"bench --backend openmp --require embree", 3, "--require embree: no row of embree is selected, so none would be "},
+    {"check --stress --shard 1/2", 2, "--stress takes only seconds and cannot be sharded; leave out --shard"},
     {"check --defects --shard 1/2", 2, "--defects takes only seconds and cannot be sharded; leave out --shard"},
     {"trace", 2, "trace: --scene SCENE is missing: which scene?"},
     {"trace --scene cubes", 2, "trace: --pixel X,Y is missing: which ray?"},
