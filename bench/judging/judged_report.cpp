@@ -3,6 +3,7 @@
 #include "bench/output/junit.h"
 #include "bench/terminal/text.h"
 #include "core/base/hash.h"
+#include "core/mesh/scene.h"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -80,7 +81,7 @@ void add_fault(Sheet& sheet, const FaultyRay& fault)
     sheet.labelled("Reason", fault.judged.reason);
     sheet.labelled("Origin", vector_text(ray.origin));
     sheet.labelled("Direction", vector_text(ray.direction));
-    sheet.labelled("Range of t", fmt::format("{:.17g} to {:.17g}", ray.t_min, ray.t_max));
+    sheet.labelled("Range", fmt::format("t from {:.17g} to {:.17g}", ray.t_min, ray.t_max));
     sheet.labelled("Answer", fault.answer.face == -1
                                  ? "a miss"
                                  : fmt::format("triangle {:.17g}, t {:.17g}, u {:.17g}, v {:.17g}", fault.answer.face,
@@ -147,6 +148,14 @@ nlohmann::json judged_json(const JudgedRun& run, const Options& options)
 }
 
 } // namespace
+
+void note_mesh(JudgedRun& run, const std::string& name, const TriangleMesh& mesh)
+{
+    run.mesh = name;
+    run.vertices = mesh.vertices.size();
+    run.triangles = mesh.triangles.size();
+    run.mesh_hash = mesh_hash(mesh);
+}
 
 Report judged_report(const JudgedRun& run, const Options& options)
 {

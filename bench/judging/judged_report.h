@@ -19,6 +19,9 @@ struct JudgedRun {
     double seconds = 0; ///< of judging
 };
 
+/// name: as the user named it.
+void note_mesh(JudgedRun& run, const std::string& name, const TriangleMesh& mesh);
+
 [[nodiscard]] Report judged_report(const JudgedRun& run, const Options& options);
 
 /// A test case for each kind of fault.

@@ -7,7 +7,6 @@
 #include "bench/verbs/judged_mesh.h"
 #include "core/base/files.h"
 #include "core/base/stopwatch.h"
-#include "core/mesh/scene.h"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -66,10 +65,7 @@ JudgedRun judged_run(const Options& options)
     const auto answers = mesh_answers_of(files.hits, *options.hit_file);
     const ReadMesh read = read_judged_mesh(options);
     JudgedRun run;
-    run.mesh = options.scenes.front();
-    run.vertices = read.mesh.vertices.size();
-    run.triangles = read.mesh.triangles.size();
-    run.mesh_hash = mesh_hash(read.mesh);
+    note_mesh(run, options.scenes.front(), read.mesh);
     run.rays = rays.size();
     run.rays_are_double = files.rays.is_double;
     run.hits_are_double = files.hits.is_double;

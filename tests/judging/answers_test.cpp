@@ -67,44 +67,71 @@ TriangleMesh square()
     return {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}, {0, 2, 2}}};
 }
 
-/// Answers that are made wrong, as tests of the oracle make them.
-enum class Falsified { next_layer, other_face, miss, t_off, u_outside, v_outside, no_face };
-constexpr const char* falsified_names[] = {"the next layer",
-                                           "another face",
-                                           "a miss",
-                                           "t off by ten bounds",
-                                           "u outside",
-                                           "v outside",
-                                           "a face that the mesh has not"};
+/// Answers that are made wrong, as in the campaign of tests/truth/oracle_campaign_test.cpp.
+enum class Falsified { next_layer, layer_after, neighbour, edge_on, miss, no_face, t_off, u_off, v_off };
+constexpr const char* falsified_names[] = {"the next layer", "the layer after that",       "a neighbour", "edge-on",
+                                           "a miss",         "a face that the mesh lacks", "t off",       "u off",
+                                           "v off"};
+
+bool shares_vertex(const TriangleMesh& mesh, std::uint32_t a, std::uint32_t b)
+{
+    const auto& corners = mesh.triangles[a];
+    return std::ranges::any_of(mesh.triangles[b],
+                               [&](std::uint32_t v) { return std::ranges::find(corners, v) != corners.end(); });
+}
+
+double sine_of(const TriangleMesh& mesh, const MeshRay& ray, std::uint32_t face)
+{
+    const auto& [a, b, c] = mesh.triangles[face];
+    const Double3 v = to_double(mesh.vertices[a]);
+    const Double3 normal = cross(to_double(mesh.vertices[b]) - v, to_double(mesh.vertices[c]) - v);
+    return std::abs(dot(normal, ray.direction)) / (length(normal) * length(ray.direction));
+}
+
+/// The face of a wrong answer; nothing if there is none for this ray.
+std::optional<std::uint32_t> false_face(const Judged& judged, const MeshRay& ray, Falsified kind, std::uint32_t number)
+{
+    const auto nearest = judged.search.nearest(ray);
+    if (kind == Falsified::next_layer || kind == Falsified::layer_after) {
+        MeshRay rest = ray;
+        auto met = nearest;
+        for (int layer = kind == Falsified::next_layer ? 1 : 2; layer > 0 && !met.empty(); --layer) {
+            rest.t_min = std::nextafter(judged.search.point_of(ray, met.front()).t, no_end);
+            met = judged.search.nearest(rest);
+        }
+        return met.empty() || std::ranges::binary_search(nearest, met.front()) ? std::nullopt
+                                                                               : std::optional(met.front());
+    }
+    std::vector<std::uint32_t> faces;
+    for (std::uint32_t face = 0; face < judged.mesh.triangles.size(); ++face) {
+        if (std::ranges::binary_search(nearest, face) || judged.search.sees_edge_on(ray, face)) continue;
+        const bool is_wanted = kind == Falsified::neighbour ? shares_vertex(judged.mesh, face, nearest.front())
+                                                            : sine_of(judged.mesh, ray, face) < 0.125;
+        if (is_wanted) faces.push_back(face);
+    }
+    return faces.empty() ? std::nullopt : std::optional(faces[number % faces.size()]);
+}
 
 /// Nothing if the ray has no such answer.
 std::optional<MeshAnswer> falsified(const Judged& judged, const MeshRay& ray, Falsified kind, std::uint32_t number)
 {
     const auto nearest = judged.search.nearest(ray);
     if (nearest.empty()) return std::nullopt;
+    if (kind == Falsified::miss) return MeshAnswer{-1, 0, 0, 0};
+    if (kind < Falsified::miss) {
+        const auto face = false_face(judged, ray, kind, number);
+        return face ? std::optional(judged.right(ray, *face)) : std::nullopt;
+    }
     MeshAnswer answer = judged.right(ray, nearest.front());
     const HitPoint point =
         point_of(judged.mesh, ray.origin, ray.direction, nearest.front(), AnswerTolerance{}.unit_roundoff);
-    const double sense = number % 2 == 0 ? 1 : -1;
-    switch (kind) {
-    case Falsified::next_layer: {
-        MeshRay rest = ray;
-        rest.t_min = answer.t + 4 * point.t_error;
-        const auto next = std::isfinite(rest.t_min) ? judged.search.nearest(rest) : std::vector<std::uint32_t>();
-        return next.empty() ? std::nullopt : std::optional(judged.right(ray, next.front()));
-    }
-    case Falsified::other_face: {
-        const auto face = static_cast<std::uint32_t>((nearest.front() + 1 + number) % judged.mesh.triangles.size());
-        answer.face = face;
-        return std::ranges::binary_search(nearest, face) ? std::nullopt : std::optional(answer);
-    }
-    case Falsified::miss: return MeshAnswer{-1, 0, 0, 0};
-    case Falsified::no_face: answer.face = static_cast<double>(judged.mesh.triangles.size()); return answer;
-    case Falsified::t_off: answer.t += sense * 10 * point.t_error; break;
-    case Falsified::u_outside: answer.u += sense * 10 * point.u_error; break;
-    case Falsified::v_outside: answer.v += sense * 10 * point.v_error; break;
-    }
-    return std::isfinite(point.t) ? std::optional(answer) : std::nullopt;
+    if (!std::isfinite(point.t)) return std::nullopt;
+    const double bounds = number % 2 == 0 ? 10 : -10;
+    if (kind == Falsified::no_face) answer.face = static_cast<double>(judged.mesh.triangles.size());
+    if (kind == Falsified::t_off) answer.t += bounds * point.t_error;
+    if (kind == Falsified::u_off) answer.u += bounds * point.u_error;
+    if (kind == Falsified::v_off) answer.v += bounds * point.v_error;
+    return answer;
 }
 
 /// As files have it.

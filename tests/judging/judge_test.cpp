@@ -138,7 +138,10 @@ TEST_F(JudgeProgram, takes_a_mesh_as_its_file_has_it)
 
 TEST_F(JudgeProgram, example_with_numpy_in_the_documentation_works)
 {
-    if (std::system("python3 -c 'import numpy' 2> /dev/null") != 0) GTEST_SKIP() << "python3-numpy is not installed";
+    const char* python = nullptr; // Debian's numpy is for Debian's python3, which may not be the first in PATH
+    for (const char* const candidate : {"/usr/bin/python3", "python3"})
+        if (std::system(fmt::format("{} -c 'import numpy' 2> /dev/null", candidate).c_str()) == 0) python = candidate;
+    if (python == nullptr) GTEST_SKIP() << "python3-numpy is not installed";
     if (!has_builder()) GTEST_SKIP() << "tetrace-builder, which reads meshes, is not built here";
     const std::string page = read_text(std::filesystem::path(TETRACE_DOCS) / "judge.md");
     const std::string begin = "```python\n";
@@ -146,7 +149,7 @@ TEST_F(JudgeProgram, example_with_numpy_in_the_documentation_works)
     write_file(folder_ / "trace.py", page.substr(from, page.find("```", from) - from));
     write_file(folder_ / "mesh.obj", plain_mesh);
     ASSERT_EQ(run("rays --scene mesh.obj --rays random --count 500 --out rays.npy").code, 0);
-    const Ended traced = run("trace.py", "python3");
+    const Ended traced = run("trace.py", python);
     ASSERT_EQ(traced.code, 0) << traced.errors;
     const Ended judged = run("judge --mesh mesh.obj --rays rays.npy --hits hits.npy");
     EXPECT_EQ(judged.code, 0) << judged.out << judged.errors;
