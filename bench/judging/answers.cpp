@@ -79,37 +79,49 @@ bool passes_edge(const AnswerCase& against, const MeshRay& ray, std::uint32_t tr
     return !is_beside && (point.u <= point.u_error || point.v <= point.v_error || w <= w_error);
 }
 
+void set_fault(JudgedAnswer& judged, AnswerVerdict verdict, std::string reason)
+{
+    judged.verdict = verdict;
+    judged.reason = std::move(reason);
+}
+
+bool names_triangle(const AnswerCase& against, const MeshAnswer& answer)
+{
+    return answer.face >= 0 && answer.face < static_cast<double>(against.mesh.triangles.size());
+}
+
+// Of a ray that meets a triangle, and an answer that names one.
+void judge_triangle(const AnswerCase& against, const MeshRay& ray, const MeshAnswer& answer, JudgedAnswer& judged)
+{
+    const auto face = static_cast<std::uint32_t>(answer.face);
+    const std::uint32_t met = judged.nearest.front();
+    const bool is_met = std::ranges::binary_search(judged.nearest, face);
+    if (!is_met && !against.search.holds_point_of(ray, face, met))
+        set_fault(judged, AnswerVerdict::wrong, "another triangle is nearer, or the ray does not meet this one");
+    else if (std::string flaw = flaw_of_point(against, ray, answer, !is_met, met); !flaw.empty())
+        set_fault(judged, AnswerVerdict::inaccurate, std::move(flaw));
+    else if (!is_met || judged.nearest.size() > 1)
+        judged.verdict = AnswerVerdict::tie;
+}
+
 } // namespace
 
 JudgedAnswer judge_answer(const AnswerCase& against, const MeshRay& ray, const MeshAnswer& answer)
 {
     JudgedAnswer judged{AnswerVerdict::right, against.search.nearest(ray), false, {}};
-    const auto& nearest = judged.nearest;
-    const auto fault = [&](AnswerVerdict verdict, std::string reason) {
-        judged.verdict = verdict;
-        judged.reason = std::move(reason);
-    };
-    const bool names_one = answer.face >= 0 && answer.face < static_cast<double>(against.mesh.triangles.size());
-    const auto face = names_one ? static_cast<std::uint32_t>(answer.face) : 0;
+    const bool is_hit = !judged.nearest.empty(), names_one = names_triangle(against, answer);
     if (answer.face == -1) {
-        if (!nearest.empty()) fault(AnswerVerdict::missed, "the ray meets a triangle");
-    } else if (!names_one) {
-        fault(AnswerVerdict::wrong,
-              fmt::format("the mesh has triangles 0 to {}; -1 is a miss", against.mesh.triangles.size() - 1));
-    } else if (nearest.empty()) {
-        fault(AnswerVerdict::invented, "the ray meets no triangle");
-    } else {
-        const bool is_met = std::ranges::binary_search(nearest, face);
-        if (!is_met && !against.search.holds_point_of(ray, face, nearest.front()))
-            fault(AnswerVerdict::wrong, "another triangle is nearer, or the ray does not meet this one");
-        else if (std::string flaw = flaw_of_point(against, ray, answer, !is_met, nearest.front()); !flaw.empty())
-            fault(AnswerVerdict::inaccurate, std::move(flaw));
-        else if (!is_met || nearest.size() > 1)
-            judged.verdict = AnswerVerdict::tie;
-    }
+        if (is_hit) set_fault(judged, AnswerVerdict::missed, "the ray meets a triangle");
+    } else if (!names_one)
+        set_fault(judged, AnswerVerdict::wrong,
+                  fmt::format("the mesh has triangles 0 to {}; -1 is a miss", against.mesh.triangles.size() - 1));
+    else if (!is_hit)
+        set_fault(judged, AnswerVerdict::invented, "the ray meets no triangle");
+    else
+        judge_triangle(against, ray, answer, judged);
     if (is_fault(judged.verdict))
-        judged.is_near_edge = (!nearest.empty() && passes_edge(against, ray, nearest.front())) ||
-                              (names_one && passes_edge(against, ray, face));
+        judged.is_near_edge = (is_hit && passes_edge(against, ray, judged.nearest.front())) ||
+                              (names_one && passes_edge(against, ray, static_cast<std::uint32_t>(answer.face)));
     return judged;
 }
 
@@ -220,8 +232,7 @@ FaultyRay faulty_ray(const AnswerCase& against, std::uint64_t number, const Mesh
 {
     FaultyRay faulty{number, ray, answer, judged, std::nullopt, std::nullopt};
     if (!judged.nearest.empty()) faulty.met = against.search.point_of(ray, judged.nearest.front());
-    const bool names_one = answer.face >= 0 && answer.face < static_cast<double>(against.mesh.triangles.size());
-    if (names_one && !against.search.sees_edge_on(ray, static_cast<std::uint32_t>(answer.face)))
+    if (names_triangle(against, answer) && !against.search.sees_edge_on(ray, static_cast<std::uint32_t>(answer.face)))
         faulty.named = against.search.point_of(ray, static_cast<std::uint32_t>(answer.face));
     return faulty;
 }

@@ -186,11 +186,9 @@ std::string judged_junit(const JudgedRun& run)
     std::vector<JunitCase> cases;
     for (const AnswerVerdict verdict : values_of<AnswerVerdict>()) {
         if (!is_fault(verdict)) continue;
-        JunitCase test{.backend = "judge",
-                       .label = {},
-                       .device = {},
-                       .driver = {},
-                       .name = fmt::format("no ray is {}", name_of(verdict))};
+        JunitCase test;
+        test.backend = "judge";
+        test.name = fmt::format("no ray is {}", name_of(verdict));
         const auto& fault = run.counts.first.at(static_cast<std::size_t>(verdict));
         if (fault) {
             test.outcome = CaseOutcome::failed;
