@@ -179,6 +179,7 @@ TEST(Answers, nearest_triangles_are_those_of_other_exact_arithmetic)
 
 TEST(Answers, falsified_ones_in_a_file_are_all_caught)
 {
+    std::array<std::size_t, std::size(falsified_names)> made{}; // not every mesh has all layers
     for (const auto& [name, scene] : make_hard_scenes()) {
         const Judged judged(scene.mesh);
         const NearMisses near_misses(scene.mesh);
@@ -195,10 +196,12 @@ TEST(Answers, falsified_ones_in_a_file_are_all_caught)
             }
             const AnswerCounts counts =
                 judge_answers({judged.mesh, judged.search, {}}, rays, through_npy(answers), 1, {});
-            EXPECT_GT(rays.size(), 50u) << name << ", " << falsified_names[kind];
+            made[static_cast<std::size_t>(kind)] += rays.size();
             EXPECT_EQ(counts.faults(), rays.size()) << name << ", " << falsified_names[kind];
         }
     }
+    for (std::size_t kind = 0; kind < made.size(); ++kind)
+        EXPECT_GT(made[kind], 100u) << falsified_names[kind];
 }
 
 TEST(Answers, have_one_verdict_each)
