@@ -1,11 +1,13 @@
 #include "bench/judging/made_rays.h"
 
+#include "core/base/error.h"
 #include "core/base/random_words.h"
 #include "core/rays/camera.h"
 #include "core/rays/camera_set.h"
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <limits>
 #include <numeric>
 
@@ -82,7 +84,6 @@ class HardMeshRays {
 public:
     explicit HardMeshRays(const TriangleMesh& mesh) : mesh_(mesh), sphere_(bounding_sphere(mesh)), thinnest_(thinnest())
     {
-        if (!(sphere_.radius > 0)) sphere_.radius = 1;
     }
 
     [[nodiscard]] RayNumbers ray(std::uint64_t number) const
@@ -216,9 +217,15 @@ private:
 
 std::vector<RayNumbers> make_mesh_rays(MadeRays kind, const TriangleMesh& mesh, std::uint64_t count)
 {
+    constexpr double min_radius = 0x1p-20; // cameras are on the grid of core/base/exact.h
+    const BoundingSphere sphere = bounding_sphere(mesh);
+    if (sphere.radius < min_radius)
+        throw Error(ErrorKind::invalid_input,
+                    fmt::format("making rays: the mesh's bounding sphere has a radius of {:.2g}, and at least 2^-20 is "
+                                "needed; scale the mesh up",
+                                sphere.radius));
     if (kind == MadeRays::primary) return primary_rays(mesh, count);
     std::vector<RayNumbers> rays(count);
-    const BoundingSphere sphere = bounding_sphere(mesh);
     if (kind == MadeRays::random) {
         for (std::uint64_t i = 0; i < count; ++i)
             rays[i] = random_ray(sphere, i);

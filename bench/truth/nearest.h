@@ -20,6 +20,9 @@ struct MeshRay {
 /// loses a denormal. Every float32 below max_magnitude is.
 inline constexpr double min_magnitude = 0x1p-160, max_magnitude = 0x1p126;
 
+/// Of a mesh's coordinates: rays from around it then are below max_magnitude.
+inline constexpr double max_coordinate = 0x1p120;
+
 /// The point at which a ray's line meets a triangle's plane: exact, then rounded to float64. u and v are the weights of
 /// the triangle's second and third vertex.
 struct PlanePoint {
@@ -32,7 +35,7 @@ struct PlanePoint {
 /// decides what it can; the rest is decided with integers as long as it takes.
 class NearestSearch {
 public:
-    /// mesh: kept by reference; its coordinates are at most max_magnitude.
+    /// mesh: kept by reference; its coordinates are at most max_coordinate.
     explicit NearestSearch(const TriangleMesh& mesh);
 
     /// All triangles at the least t of the ray, ascending; empty: it meets none. Several share an edge or a vertex that

@@ -27,10 +27,10 @@ ReadMesh read_judged_mesh(const Options& options)
         say("tetrace: " + message);
     for (std::size_t i = 0; i < read.mesh.vertices.size(); ++i)
         for (int axis = 0; axis < 3; ++axis)
-            if (std::abs(static_cast<double>(read.mesh.vertices[i][axis])) > max_magnitude)
+            if (std::abs(static_cast<double>(read.mesh.vertices[i][axis])) > max_coordinate)
                 throw Error(
                     ErrorKind::invalid_input,
-                    fmt::format("reading {}: vertex {} has a coordinate above 2^126; scale the mesh and the rays "
+                    fmt::format("reading {}: vertex {} has a coordinate above 2^120; scale the mesh and the rays "
                                 "down",
                                 options.scenes.front(), i));
     return read;

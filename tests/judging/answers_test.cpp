@@ -187,8 +187,8 @@ TEST(Answers, falsified_ones_in_a_file_are_all_caught)
             std::vector<MeshRay> rays;
             std::vector<MeshAnswer> answers;
             for (std::uint32_t i = 0; i < 500; ++i) {
-                const ExactRay made = near_misses.ray(i);
-                const MeshRay ray{to_double(made.origin), to_double(made.direction), 0, no_end};
+                const ExactRay miss = near_misses.ray(i);
+                const MeshRay ray{to_double(miss.origin), to_double(miss.direction), 0, no_end};
                 const auto answer = falsified(judged, ray, static_cast<Falsified>(kind), i);
                 if (!answer) continue;
                 rays.push_back(ray);
@@ -327,4 +327,6 @@ TEST(MadeRays, are_as_many_as_wanted_and_what_files_may_hold)
             numbers.insert(numbers.end(), ray.begin(), ray.end());
         EXPECT_NO_THROW(static_cast<void>(mesh_rays_of({rays.size(), 8, false, numbers}, "rays.npy"))) << name_of(kind);
     }
+    const TriangleMesh point{{{1, 1, 1}}, {{0, 0, 0}}};
+    EXPECT_THROW(static_cast<void>(make_mesh_rays(MadeRays::hard, point, 1)), Error);
 }
