@@ -94,6 +94,7 @@ TEST_F(JudgeProgram, refuses_what_does_not_fit_with_exit_code_2)
         {"judge --mesh cubes --rays rays.npy", "--hits FILE.npy is missing"},
         {"judge --mesh cubes --hits hits.npy", "--rays FILE.npy is missing"},
         {"judge --rays rays.npy --hits hits.npy", "--mesh MESH is missing"},
+        {"judge --mesh cubes --rays", "--rays needs a value: FILE.npy"},
         {"judge --mesh cubes --rays hits.npy --hits hits.npy", "N x 8"},
         {"judge --mesh cubes --rays rays.npy --hits nine.npy", "nine.npy has 9 answers"},
         {"judge --mesh bunny-1 --rays rays.npy --hits hits.npy", "cleaned and placed"},
