@@ -59,7 +59,10 @@ int rays_command(const Options& options)
     require_npy("--out", *options.out);
     if (options.answer_file) {
         require_npy("--answers", *options.answer_file);
-        check_not_an_input(*options.answer_file, {*options.out}, "--answers");
+        if (std::filesystem::absolute(*options.answer_file).lexically_normal() ==
+            std::filesystem::absolute(*options.out).lexically_normal())
+            throw Error(ErrorKind::usage, "--answers: it is the file of --out; name another one");
+        check_not_an_input(*options.answer_file, {*options.out}, "--answers"); // by a link
     }
     const ReadMesh read = read_judged_mesh(options);
     std::vector<RayNumbers> rays;
