@@ -367,18 +367,35 @@ BuildEnd build_scene(const fs::path& mesh, const fs::path& out, const std::strin
     return {second.outcome.interrupted, error};
 }
 
-void build_mesh_only(const fs::path& mesh, const fs::path& out, const std::string& label, const BuildOptions& options,
-                     const Progress& progress, std::vector<std::string>& notes)
+namespace {
+
+/// what: the builder's option for it.
+void run_for_mesh(const char* what, const fs::path& mesh, const fs::path& out, const std::string& label,
+                  const BuildOptions& options, const Progress& progress, std::vector<std::string>& notes)
 {
     const fs::path builder = find_builder();
     if (builder.empty()) fail_without_builder(label);
     auto arguments = arguments_of(mesh, out, {}, label, options, {options.switches});
-    arguments.emplace_back("--mesh-only");
+    arguments.emplace_back(what);
     const Run run = run_builder(builder, arguments, label, options, progress);
     if (!run.is_good())
         throw failure(fmt::format("reading the mesh of {} from {}", label, mesh.string()),
                       ending_of(run.outcome, options), run.report, run.outcome.wall_s);
     notes.insert(notes.end(), run.report.notes.begin(), run.report.notes.end());
+}
+
+} // namespace
+
+void build_mesh_only(const fs::path& mesh, const fs::path& out, const std::string& label, const BuildOptions& options,
+                     const Progress& progress, std::vector<std::string>& notes)
+{
+    run_for_mesh("--mesh-only", mesh, out, label, options, progress, notes);
+}
+
+void read_mesh_only(const fs::path& mesh, const fs::path& out, const std::string& label, const Progress& progress,
+                    std::vector<std::string>& notes)
+{
+    run_for_mesh("--as-read", mesh, out, label, {}, progress, notes);
 }
 
 std::vector<TetsAttempt> fallback_attempts(const BuildOptions& options)

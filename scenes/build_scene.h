@@ -55,4 +55,10 @@ struct BuildEnd {
 void build_mesh_only(const std::filesystem::path& mesh, const std::filesystem::path& out, const std::string& label,
                      const BuildOptions& options, const Progress& progress, std::vector<std::string>& notes);
 
+/// Runs tetrace-builder for only the triangles of a mesh file as it has them: not cleaned, not placed, every number as
+/// it is read. It writes `out`, which read_raw_mesh() reads. Throws as build_scene() does, and Error{invalid_input} for
+/// a mesh whose coordinates have to be centred before they are rounded to float32.
+void read_mesh_only(const std::filesystem::path& mesh, const std::filesystem::path& out, const std::string& label,
+                    const Progress& progress, std::vector<std::string>& notes);
+
 } // namespace tetrace

@@ -12,6 +12,7 @@
 #include "scenes/load_pinned.h"
 #include "scenes/mesh_files.h"
 #include "scenes/procedural.h"
+#include "scenes/raw_mesh.h"
 #include "scenes/scene_file.h"
 
 #include <algorithm>
@@ -340,6 +341,36 @@ LoadedScene load_scene(const SceneRequest& request, const Progress& progress)
     if (!fs::exists(path, ignored)) refuse_name(request.name);
     if (path.extension() == ".tet") return load_scene_file(request, progress);
     return load_mesh_scene(request, is_stream(path) ? spooled_mesh(path) : path, progress);
+}
+
+namespace {
+
+ReadMesh read_mesh_file(const std::string& name, const fs::path& file, const Progress& progress)
+{
+    ReadMesh read{{}, file, {}};
+    const BuildFolder folder(cache_directory() / (scene_label(name) + ".read"));
+    const fs::path raw = folder.path() / "mesh";
+    read_mesh_only(file, raw, scene_label(name), progress, read.messages);
+    read.mesh = read_raw_mesh(raw);
+    return read;
+}
+
+} // namespace
+
+ReadMesh read_mesh_of(const std::string& name, const Progress& progress)
+{
+    if (is_made_in_place(name)) return {load_scene({name, {}}, progress).scene.mesh, {}, {}};
+    if (const auto procedural = find_procedural(name)) return read_mesh_file(name, mesh_file(*procedural), progress);
+    if (const CatalogueEntry* entry = find_in_catalogue(name)) return read_mesh_file(name, mesh_file(*entry), progress);
+    const fs::path path = name;
+    if (find_pinned(name) != nullptr || path.extension() == ".tet")
+        throw Error(ErrorKind::usage,
+                    fmt::format("scene {}: its mesh has been cleaned and placed, and rays in the coordinates of a mesh "
+                                "file would not fit it; name the mesh file, or a scene without -1",
+                                name));
+    std::error_code ignored; // as above
+    if (!fs::exists(path, ignored)) refuse_name(name);
+    return read_mesh_file(name, is_stream(path) ? spooled_mesh(path) : path, progress);
 }
 
 } // namespace tetrace

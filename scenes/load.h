@@ -30,4 +30,15 @@ struct LoadedScene {
 /// thrown but returned, with a scene without tets.
 [[nodiscard]] LoadedScene load_scene(const SceneRequest& request, const Progress& progress);
 
+/// A mesh as its file has it.
+struct ReadMesh {
+    TriangleMesh mesh;                 ///< every number as it is read; `cubes` and `lattice` as they are made
+    std::filesystem::path file;        ///< empty if there is none
+    std::vector<std::string> messages; ///< for the user
+};
+
+/// Reads a mesh with tetrace-builder, without building a scene. name: as SceneRequest::name, but neither a `.tet` file
+/// nor a pinned scene, whose meshes have been cleaned and placed. Throws as load_scene() does.
+[[nodiscard]] ReadMesh read_mesh_of(const std::string& name, const Progress& progress);
+
 } // namespace tetrace

@@ -207,6 +207,25 @@ const VerbHelp verb_help[] = {
      "  tetrace dump --backend opencl --method maria --layout tet80 --math fast --out report\n"
      "  tetrace dump --backend vulkan --method project --scene cubes --pixel 128,100 --out case\n"
      "  tetrace dump --backend opencl --defect loop_of_70000_iterations --out case\n"},
+    {Verb::rays, "make rays for other programs, with exact answers",
+     "Makes rays for a mesh, in the coordinates of its file, and writes them as a .npy file of NumPy: N x 8 numbers of "
+     "float32, origin, t_min, direction, t_max. --answers also writes what each ray meets first, by exact arithmetic: "
+     "N x 4 numbers, face, t, u, v. The rays are the same on every machine. 'tetrace judge' judges the answers of "
+     "another program to these rays, or to any others. docs/judge.md has the formats, and an example with NumPy.",
+     "  tetrace rays --scene bunny.ply --rays hard --out rays.npy\n"
+     "  tetrace rays --scene bunny.ply --count 1000000 --out rays.npy --answers hits.npy\n"},
+    {Verb::judge, "judge another program's answers to rays by exact arithmetic",
+     "Reads a mesh, rays and the answers of any ray tracer, and decides each answer with exact arithmetic on the mesh "
+     "as "
+     "its file has it. Each ray has one verdict: 'right'; 'tie', another triangle is exactly as near, as at a shared "
+     "edge; 'inaccurate', the nearest triangle, with a t, u or v that is not of the point; 'wrong', a triangle that is "
+     "not the nearest; 'missed', a miss although the ray meets a triangle; 'invented', a triangle although it meets "
+     "none. The last four are faults. The first is printed in full, and the number of faults that rounding near an "
+     "edge "
+     "may explain. Exits with 1 if there is a fault. docs/judge.md defines every verdict and tolerance.",
+     "  tetrace judge --mesh bunny.ply --rays rays.npy --hits hits.npy\n"
+     "  tetrace judge --mesh bunny.ply --rays rays.npy --hits hits.npy --slack 16 --out judged.json --junit "
+     "judged.xml\n"},
     {Verb::compare, "compare results of bench, or two of check, row by row",
      "Compares the rows of B.json with those of the same name in A.json: another commit, driver, compiler or machine. "
      "Both were made by 'tetrace bench --out' or 'tetrace reproduce --out' (the exit searches of table5 are rows "

@@ -93,8 +93,8 @@ std::string utc_now()
 
 namespace {
 
-constexpr std::string_view before_path = " \t\n'\"`([{<=,:;|";
-constexpr std::string_view after_path = " \t\n'\"`)]}>,:;|&";
+constexpr std::string_view before_path = " \t\n'\"`([{<>=,:;|";
+constexpr std::string_view after_path = " \t\n'\"`)]}<>,:;|&";
 
 void replace_all(std::string& text, const std::string& what, const std::string& by)
 {
@@ -122,8 +122,15 @@ std::string last_part(std::string path)
     return deep || has_ending ? name : "(a folder)";
 }
 
+/// Whether a slash is that of "</name>", as JUnit has them, and not of a path in such brackets.
+bool closes_element(const std::string& text, std::size_t slash)
+{
+    return slash > 0 && text[slash - 1] == '<' && text.find('/', slash + 1) > text.find('>', slash);
+}
+
 bool starts_path(const std::string& text, std::size_t at)
 {
+    if (closes_element(text, at)) return false;
     if (at > 0 && before_path.find(text[at - 1]) == std::string_view::npos) return false;
     const std::size_t slash = text[at] == '~' ? at + 1 : at;
     return slash + 1 < text.size() && text[slash] == '/' && text[slash + 1] != '/' &&
@@ -161,8 +168,9 @@ std::vector<std::filesystem::path> named_paths(const Options& options)
     std::vector<std::filesystem::path> paths(options.scenes.begin(), options.scenes.end());
     paths.insert(paths.end(), options.files.begin(), options.files.end());
     paths.insert(paths.end(), options.expected.begin(), options.expected.end());
-    for (const auto* path : {&options.out, &options.junit, &options.picture_folder, &options.code_folder,
-                             &options.write_expected, &options.chart_folder, &options.portability_csv})
+    for (const auto* path :
+         {&options.out, &options.junit, &options.picture_folder, &options.code_folder, &options.write_expected,
+          &options.chart_folder, &options.portability_csv, &options.ray_file, &options.hit_file})
         if (*path) paths.push_back(**path);
     if (options.own_cameras) paths.emplace_back(options.own_cameras->file);
     constexpr std::string_view out = "--benchmark_out=";

@@ -30,7 +30,7 @@ inline constexpr unsigned selecting = tracing | bit(Verb::inspect);
 inline constexpr unsigned building = bit(Verb::build) | bit(Verb::dump) | reproducing;
 inline constexpr unsigned reporting = measuring | bit(Verb::build) | bit(Verb::devices) | bit(Verb::scenes) |
                                       bit(Verb::reproduce) | bit(Verb::inspect) | bit(Verb::trace) |
-                                      bit(Verb::compare) | bit(Verb::show) | bit(Verb::merge);
+                                      bit(Verb::compare) | bit(Verb::show) | bit(Verb::merge) | bit(Verb::judge);
 
 /// Of `reproduce` alone.
 [[nodiscard]] std::vector<OptionRow> reproduce_options();
@@ -43,5 +43,7 @@ inline constexpr unsigned reporting = measuring | bit(Verb::build) | bit(Verb::d
 // Of verbs for those who look into a kernel (debugging_options.cpp).
 [[nodiscard]] std::vector<OptionRow> inspect_options();
 [[nodiscard]] std::vector<OptionRow> trace_options();
+/// Of `rays` and `judge`.
+[[nodiscard]] std::vector<OptionRow> mesh_ray_options();
 
 } // namespace tetrace

@@ -282,7 +282,7 @@ std::vector<OptionRow> ray_options()
          "container with a CPU quota, the quota rounded down. 'bench' accepts a list, for example 1,2,4, and measures "
          "each row of a processor with each number; all else has the largest. Scenes are always built with 0. Default: "
          "0.",
-         with_rays, true,
+         with_rays | bit(Verb::rays) | bit(Verb::judge), true,
          [](Options& o, const std::string& v) {
              o.thread_counts.push_back(static_cast<unsigned>(parse_count("--threads", v, 0, 4096)));
              o.threads = std::ranges::max(o.thread_counts);
@@ -428,8 +428,8 @@ std::vector<OptionRow> make_table()
 {
     std::vector<OptionRow> table;
     for (auto part :
-         {reproduce_options, inspect_options, trace_options, scene_options, row_options, ray_options, driver_options,
-          judging_options, expectation_options, report_options, sharing_options, output_options})
+         {reproduce_options, inspect_options, trace_options, scene_options, row_options, mesh_ray_options, ray_options,
+          driver_options, judging_options, expectation_options, report_options, sharing_options, output_options})
         for (OptionRow& row : part())
             table.push_back(std::move(row));
     std::stable_partition(table.begin(), table.end(), [](const OptionRow& row) { return row.group != experiments; });

@@ -322,7 +322,7 @@ Options parse_verb(Verb verb, const std::vector<std::string>& arguments)
     } catch (const CLI::ExtrasError&) {
         reject_command_line(verb, not_accepted(verb, arguments, app.remaining()));
     } catch (const CLI::ArgumentMismatch& problem) {
-        reject_command_line(verb, without_value(problem.what()));
+        reject_command_line(verb, without_value(verb, problem.what()));
     } catch (const CLI::ParseError& problem) {
         reject_command_line(verb, problem.what());
     }

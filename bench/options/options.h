@@ -29,6 +29,8 @@ enum class Verb {
     inspect,
     trace,
     dump,
+    rays,
+    judge,
     compare,
     show,
     report,
@@ -39,8 +41,8 @@ enum class Verb {
 template <>
 inline constexpr auto enum_names<Verb> = names_up_to<Verb::version>("devices", "scenes", "build", "bench", "check",
                                                                     "render", "reproduce", "inspect", "trace", "dump",
-                                                                    "compare", "show", "report", "merge", "help",
-                                                                    "version");
+                                                                    "rays", "judge", "compare", "show", "report",
+                                                                    "merge", "help", "version");
 
 /// The form of a result.
 enum class Format { table, json, csv, markdown };
@@ -86,6 +88,11 @@ struct SearchSize {
     [[nodiscard]] std::uint64_t count() const { return std::uint64_t{tets} * rays; }
     friend bool operator==(const SearchSize&, const SearchSize&) = default;
 };
+
+/// Rays that the verb `rays` makes (bench/judging/made_rays.h).
+enum class MadeRays { primary, random, hard };
+template <>
+inline constexpr auto enum_names<MadeRays> = names_up_to<MadeRays::hard>("primary", "random", "hard");
 
 /// A pixel of an image; (0, 0) is the top left.
 struct ImagePixel {
@@ -179,6 +186,12 @@ struct Options {
     unsigned repeat = 1;                                 ///< of `check`: how often rows are checked
     std::vector<std::filesystem::path> expected;         ///< of `check`: files and folders of expectations
     std::optional<std::filesystem::path> write_expected; ///< of `check`: file or folder of what it showed
+    std::vector<MadeRays> made_rays;                     ///< of `rays`; empty: all kinds
+    unsigned made_count = 65'536;                        ///< of `rays`: rays of each kind
+    std::optional<std::filesystem::path> answer_file;    ///< of `rays`: for the exact answers
+    std::optional<std::filesystem::path> ray_file;       ///< of `judge`, as the next
+    std::optional<std::filesystem::path> hit_file;
+    double slack = 2;           ///< of `judge`: times what rounding in the kernels' formula can lose
     double tolerance = 0.03;    ///< of `compare`, a fraction: a row that is slower by more is a regression
     bool allow_missing = false; ///< of `compare`
     bool clear = false;

@@ -49,10 +49,11 @@ std::vector<OptionRow> output_options()
          usual_for(~(tracing | bit(Verb::reproduce)), "{}")},
         {"Output", "--out", "PATH",
          "Write to the file PATH: the result, the picture of 'render', the page of 'report'. For 'dump' it is the "
-         "folder of the files, and is required. Without --format, its extension sets a result's format: .json, .csv, "
+         "folder of the files, and is required, as is the .npy file of 'rays'. Without --format, its extension sets a "
+         "result's format: .json, .csv, "
          ".md, or .txt for the table; the table still goes to standard output. '-' means standard output instead of a "
          "file. -o is short for it. Default: none; of 'render' the current folder, of 'report' report.html.",
-         reporting | bit(Verb::render) | bit(Verb::report) | bit(Verb::dump), false, set_out(),
+         reporting | bit(Verb::render) | bit(Verb::report) | bit(Verb::dump) | bit(Verb::rays), false, set_out(),
          usual_for(every_verb, "where to write; -o is short for it")},
         {"Output", "--columns", "LIST",
          "Print only these columns, after the first one, in the tables that have them, named as in CSV and JSON: "
@@ -82,8 +83,8 @@ std::vector<OptionRow> output_options()
         {"Output", "--junit", "FILE",
          "Also write the result to FILE as JUnit XML, one test case per row; '-' means standard output, instead of "
          "the table. Default: none.",
-         sharing | bit(Verb::merge), false, set_path("--junit", &Options::junit),
-         usual_for(bit(Verb::check) | bit(Verb::merge), "also as JUnit XML, a test case per row")},
+         sharing | bit(Verb::merge) | bit(Verb::judge), false, set_path("--junit", &Options::junit),
+         usual_for(bit(Verb::check) | bit(Verb::merge) | bit(Verb::judge), "also as JUnit XML, a test case per row")},
     };
 }
 

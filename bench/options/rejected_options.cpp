@@ -34,10 +34,11 @@ std::string verbs_taking_option(const std::string& name)
 
 } // namespace
 
-std::string without_value(const std::string& problem)
+std::string without_value(Verb verb, const std::string& problem)
 {
     const std::string name = problem.substr(0, problem.find(':'));
-    const auto row = std::ranges::find(option_table(), name, &OptionRow::name);
+    const auto row = std::ranges::find_if(option_table(),
+                                          [&](const OptionRow& one) { return one.name == name && takes(verb, one); });
     if (row == option_table().end()) return problem;
     return row->value.empty() ? name + " takes no value" : fmt::format("{} needs a value: {}", name, row->value);
 }

@@ -16,7 +16,7 @@ namespace tetrace {
                                        const std::vector<std::string>& unplaced);
 
 /// What CLI11 says of an option without its value ("--scene: 1 required"), in our words.
-[[nodiscard]] std::string without_value(const std::string& problem);
+[[nodiscard]] std::string without_value(Verb verb, const std::string& problem);
 
 /// Throws Error{usage}: the word is not a verb. verbs: their names.
 [[noreturn]] void reject_verb(const std::string& word, std::vector<std::string> verbs);

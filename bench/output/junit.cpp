@@ -230,9 +230,9 @@ std::string junit_xml(const std::vector<RowRecord>& rows, const CheckJudgement& 
     return document_xml(std::move(suites), verb);
 }
 
-std::string junit_suite(const std::string& suite, const std::vector<JunitCase>& cases, const std::string& problem)
+std::string junit_suite(const std::string& suite, const std::vector<JunitCase>& cases, const std::string& problem,
+                        std::string_view verb)
 {
-    constexpr std::string_view verb = "check";
     std::vector<Suite> suites;
     if (!problem.empty()) suites.emplace_back(Suite{verb}).add_problem(problem);
     if (!cases.empty()) suites.push_back(Suite{verb, suite});

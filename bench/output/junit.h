@@ -36,6 +36,6 @@ struct JunitCase {
 
 /// The same of one suite of other test cases: "tetrace check <suite>".
 [[nodiscard]] std::string junit_suite(const std::string& suite, const std::vector<JunitCase>& cases,
-                                      const std::string& problem = {});
+                                      const std::string& problem = {}, std::string_view verb = "check");
 
 } // namespace tetrace

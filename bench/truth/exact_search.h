@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bench/truth/box_tree.h"
 #include "bench/truth/exact_ray.h"
 #include "core/mesh/triangle_mesh.h"
 
@@ -21,7 +22,7 @@ struct FirstHit {
 class ExactSearch {
 public:
     /// mesh: kept by reference; its coordinates are on the grid of core/base/exact.h.
-    explicit ExactSearch(const TriangleMesh& mesh);
+    explicit ExactSearch(const TriangleMesh& mesh) : mesh_(mesh), tree_(mesh) {}
 
     /// The first triangle that the part of the ray meets. radius: in domain units, at least tie_bound().
     [[nodiscard]] FirstHit first(const ExactRay& ray, const RayPart& part, double radius) const;
@@ -31,21 +32,14 @@ public:
     [[nodiscard]] std::vector<std::uint32_t> within(const ExactRay& ray, const RayPart& part, double radius) const;
 
 private:
-    struct Node {
-        float low[3], high[3];
-        std::uint32_t first = 0; ///< of its triangles in order_, or of its two children
-        std::uint32_t count = 0; ///< triangles; 0: it has children
-    };
-    struct Builder;
     struct Tube;
     class Nearest;
 
     template <class Visit>
-    void visit(Tube& tube, const Visit& visit) const;
+    void visit(const Tube& tube, const Visit& visit) const;
 
     const TriangleMesh& mesh_;
-    std::vector<Node> nodes_;
-    std::vector<std::uint32_t> order_;
+    BoxTree tree_;
 };
 
 } // namespace tetrace

@@ -7,9 +7,9 @@
 namespace tetrace {
 namespace {
 
-constexpr double unit_roundoff = 0x1p-24;
+constexpr double float_roundoff = 0x1p-24;
 // Of products of n rounded factors the error is below n e (1 + 2^-16).
-constexpr double e = unit_roundoff * (1 + 0x1p-16);
+constexpr double raised = 1 + 0x1p-16;
 
 struct Triangle {
     Double3 a, b, c;
@@ -57,7 +57,7 @@ bool names_point_of_edge_on(const Triangle& triangle, const ExactRay& ray, const
         most = std::max(most, depth);
         reach = std::max(reach, length(corner - origin) / std::sqrt(square));
     }
-    constexpr double share = 8 * e;
+    constexpr double share = 8 * float_roundoff * raised;
     const double slack = share * reach;
     return u >= -share && v >= -share && u + v <= 1 + share && t >= least - slack && t <= most + slack;
 }
@@ -73,10 +73,11 @@ bool names_one_point(const Triangle& triangle, const ExactRay& ray, const Hit& h
     return apart <= bound * condition;
 }
 
-HitPoint point_on(const Triangle& triangle, const ExactRay& ray)
+HitPoint point_on(const Triangle& triangle, Double3 origin, Double3 direction, double unit_roundoff)
 {
     const auto& [a, b, c, e1, e2] = triangle;
-    const Double3 direction = to_double(ray.direction), offset = to_double(ray.origin) - a;
+    const double e = unit_roundoff * raised;
+    const Double3 offset = origin - a;
     const Double3 p = cross(direction, e2), q = cross(offset, e1);
     const Double3 p_magnitude = cross_magnitude(direction, e2), q_magnitude = cross_magnitude(offset, e1);
     const double determinant = dot(e1, p);
@@ -102,7 +103,13 @@ HitPoint point_on(const Triangle& triangle, const ExactRay& ray)
 
 HitPoint point_of(const TriangleMesh& mesh, const ExactRay& ray, std::uint32_t triangle)
 {
-    return point_on(triangle_of(mesh, triangle), ray);
+    return point_of(mesh, to_double(ray.origin), to_double(ray.direction), triangle, float_roundoff);
+}
+
+HitPoint point_of(const TriangleMesh& mesh, Double3 origin, Double3 direction, std::uint32_t triangle,
+                  double unit_roundoff)
+{
+    return point_on(triangle_of(mesh, triangle), origin, direction, unit_roundoff);
 }
 
 double end_error_of(const TriangleMesh& mesh, const ExactRay& ray, std::uint32_t triangle, double bound)
@@ -114,7 +121,7 @@ bool names_right_point(const TriangleMesh& mesh, const ExactRay& ray, const Hit&
 {
     const Triangle triangle = triangle_of(mesh, hit.face_id);
     if (formula == HitFormula::other) return names_one_point(triangle, ray, hit, bound);
-    const HitPoint point = point_on(triangle, ray);
+    const HitPoint point = point_of(mesh, ray, hit.face_id);
     if (point.may_be_edge_on && names_point_of_edge_on(triangle, ray, hit)) return true;
     return std::isfinite(point.t) && is_within(static_cast<double>(hit.t), point.t, point.t_error) &&
            is_within(static_cast<double>(hit.u), point.u, point.u_error) &&

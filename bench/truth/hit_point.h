@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bench/truth/exact_ray.h"
+#include "core/base/vec.h"
 #include "core/mesh/triangle_mesh.h"
 
 #include <cstdint>
@@ -15,6 +16,10 @@ struct HitPoint {
     bool may_be_edge_on = false; ///< the formula may take the triangle for one that is seen edge-on
 };
 [[nodiscard]] HitPoint point_of(const TriangleMesh& mesh, const ExactRay& ray, std::uint32_t triangle);
+
+/// The same of any line, and of that formula in another precision. unit_roundoff: 2^-24 for float32.
+[[nodiscard]] HitPoint point_of(const TriangleMesh& mesh, Double3 origin, Double3 direction, std::uint32_t triangle,
+                                double unit_roundoff);
 
 /// How far past a ray's end, or before it, a triangle may be met and count as on the other side: the error of t, and
 /// the bound.

@@ -22,6 +22,8 @@ int reproduce_command(const Options& options);
 int inspect_command(const Options& options);
 int trace_command(const Options& options);
 int dump_command(const Options& options);
+int rays_command(const Options& options);
+int judge_command(const Options& options);
 int compare_command(const Options& options);
 int show_command(const Options& options);
 int report_command(const Options& options);

@@ -53,7 +53,7 @@ std::string words_when_begun(const Options& options)
 {
     const bool is_long = options.verb == Verb::bench || options.verb == Verb::check || options.verb == Verb::render ||
                          options.verb == Verb::build || options.verb == Verb::inspect || options.verb == Verb::trace ||
-                         options.verb == Verb::reproduce;
+                         options.verb == Verb::reproduce || options.verb == Verb::rays || options.verb == Verb::judge;
     if (!is_long) return {};
     const char* kept = options.verb == Verb::build    ? "scenes that were built before are in the cache"
                        : options.verb == Verb::render ? "pictures that were written before are whole"
@@ -80,6 +80,8 @@ int run_verb(const Options& options)
     case Verb::inspect: return inspect_command(options);
     case Verb::trace: return trace_command(options);
     case Verb::dump: return dump_command(options);
+    case Verb::rays: return rays_command(options);
+    case Verb::judge: return judge_command(options);
     case Verb::compare: return compare_command(options);
     case Verb::show: return show_command(options);
     case Verb::report: return report_command(options);

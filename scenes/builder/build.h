@@ -43,6 +43,7 @@ struct BuilderOptions {
     double weld = 0;               ///< repair: with at least this tolerance, domain units; 0: only where it must be
     TetsKind tets = TetsKind::cdt;
     int effort = default_effort; ///< of the optimiser, for TetsKind::rays
+    bool as_read = false;        ///< nothing is built: the triangles are written as the file has them (raw_mesh.h)
     bool mesh_only = false;      ///< no tets: the mesh is read, cleaned and placed in its domain
     double tetgen_for_s = 0;     ///< TetGen has failed if it takes more processor time; 0: no limit
     double optimise_for_s = 300; ///< the optimiser stops then, with what it has reached; 0: no limit

@@ -2,8 +2,10 @@
 #include "core/base/printable.h"
 #include "scenes/builder/build.h"
 #include "scenes/builder/failure.h"
+#include "scenes/builder/mesh_reader.h"
 #include "scenes/builder/run_cgal.h"
 #include "scenes/builder/run_tetgen.h"
+#include "scenes/raw_mesh.h"
 #include "scenes/scene_file.h"
 
 #include <CLI/CLI.hpp>
@@ -133,6 +135,8 @@ std::optional<int> parse(int argc, char** argv, BuilderOptions& options)
            "the tets cannot be made if that takes more than this many seconds of processor time; default: 0, no limit")
         ->check(CLI::Range(0.0, 1e6).description(""))
         ->type_name("S");
+    app.add_flag("--as-read", options.as_read,
+                 "write only the triangles as the file has them, not cleaned, placed or checked, for tetrace judge");
     app.add_flag("--mesh-only", options.mesh_only,
                  "write a scene without tets, which BVHs can be built of; TetGen does not run");
     std::string tets(name_of(options.tets));
@@ -174,6 +178,20 @@ void require_out_folder(const std::filesystem::path& out)
                                                     out.string(), folder.string()));
 }
 
+void write_as_read(const BuilderOptions& options)
+{
+    require_out_folder(options.out);
+    const MeshSoup soup = read_mesh(options.mesh);
+    for (const std::string& text : soup.notes)
+        say("note", text);
+    if (soup.centre != Double3{})
+        throw Error(ErrorKind::invalid_input,
+                    fmt::format("reading mesh {}: its coordinates are too large for its size to be rounded to float32; "
+                                "subtract its centre, ({}, {}, {}), from its vertices and from the rays",
+                                options.mesh.string(), soup.centre.x, soup.centre.y, soup.centre.z));
+    write_raw_mesh(options.out, soup.mesh);
+}
+
 void write_mesh_only(const std::filesystem::path& out, PreparedScene& prepared)
 {
     prepared.scene.build.switches.clear();
@@ -205,6 +223,7 @@ int main(int argc, char** argv)
 {
     BuilderOptions options;
     if (const auto code = parse(argc, argv, options)) return *code;
+    if (options.as_read) return guarded([&] { write_as_read(options); });
     PreparedScene prepared;
     int code = guarded([&] {
         if (options.switches != cgal_switches) require_switches(options.switches);

@@ -88,6 +88,12 @@ TEST(Anonymous, goes_through_all_of_a_result)
     EXPECT_EQ(anonymous_json(result, {}), expected);
 }
 
+TEST(Anonymous, elements_of_junit_are_closed_still)
+{
+    EXPECT_EQ(anonymous_text("<case>/home/ann/x.ply</case>\n</suite>\n", {}), "<case>x.ply</case>\n</suite>\n");
+    EXPECT_EQ(anonymous_text("#include </home/ann/x.h>", {}), "#include <x.h>");
+}
+
 TEST_F(AnonymousProgram, results_hold_neither_the_hosts_name_nor_a_folder)
 {
     if (!can_name_a_host()) GTEST_SKIP() << "this system lets nobody name a host: 'unshare -u' is not permitted";

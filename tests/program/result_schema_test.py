@@ -76,6 +76,16 @@ def judged(folder):
     return {"expected": expected, "checks": fresh(["compare", str(result), str(result)])}
 
 
+def judged_answers(folder):
+    """Answers of another program, all of which are misses."""
+    rays, hits = folder / "rays.npy", folder / "hits.npy"
+    subprocess.run([TETRACE, "rays", "--scene", "cubes", "--count", "9", "--out", str(rays), "--answers", str(hits)], check=True,
+                   stdout=subprocess.DEVNULL)
+    bytes_ = hits.read_bytes()
+    hits.write_bytes(bytes_[:-27 * 16] + b"".join([b"\0\0\x80\xbf" + bytes(12)] * 27))
+    return fresh(["judge", "--mesh", "cubes", "--rays", str(rays), "--hits", str(hits)], (1,))
+
+
 def reproduced(bench):
     """A result of `tetrace reproduce`, as results/README.md states it."""
     head = ("schema_version", "date", "version", "commit", "compiler", "flags", "host")
@@ -156,6 +166,7 @@ class ResultSchema(unittest.TestCase):
             several = fresh(["compare", file.name, file.name, file.name])
         with tempfile.TemporaryDirectory() as folder:
             checks = judged(pathlib.Path(folder))
+            checks["judge"] = judged_answers(pathlib.Path(folder))
         cls.all = {**checks, "bench": cls.bench, "check": cls.check, "compare": cls.compare, "several": several, "reproduce": reproduced(cls.bench),
                    "table5": fresh(["reproduce", "table5", "--searches", "20x8", "--samples", "3", "--sample-time", "0", "--method", "maria",
                                     "--layout", "tet80", "--backend", "openmp", "--threads", "1"]),
@@ -265,6 +276,7 @@ class ResultSchema(unittest.TestCase):
             "inspect": ("programs", "skipped_targets"),
             "defects": ("defects", "missing_devices"),
             "trace": ("scenes", "trace"),
+            "judge": ("judged",),
         }.items():
             for key in keys:
                 self.refuses(twin(self.all[verb], (key,), lambda parent, name: parent.pop(name)), f"{verb}: no {key}")
