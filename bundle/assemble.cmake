@@ -51,6 +51,6 @@ math(EXPR whole "${tenths} / 10")
 math(EXPR tenth "${tenths} % 10")
 message(STATUS "${BUNDLE}: ${whole}.${tenth} MiB (${bytes} bytes), scenes: ${SCENES}, needs glibc ${GLIBC}")
 if(bytes GREATER max_bytes)
-  message(FATAL_ERROR "The bundle has ${bytes} bytes, more than the ${largest_bytes} (64 MiB) that it may have; its "
+  message(FATAL_ERROR "The bundle has ${bytes} bytes, more than the ${max_bytes} (64 MiB) that it may have; its "
                       "largest parts: du -a ${BUNDLE} | sort -n | tail")
 endif()
