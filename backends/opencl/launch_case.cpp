@@ -20,10 +20,10 @@ LaunchCase case_of(const FoundDevice& device, const ProgramId& id, const std::st
     };
     LaunchCase made;
     made.program = {id.source + ".cl", "the program, OpenCL C with its includes resolved", {}, text(id.source)};
-    made.host = {"run_case.c", "a host in C, whose head explains case.txt",
+    made.host = {"run_case.c", "a host in C, whose head says how to build and run it",
                  "cc -O1 -o run_case run_case.c -l:libOpenCL.so.1 && ./run_case", text("run_case")};
-    made.lines = {"options " + build_options(device, id), "entry " + entry, "items " + std::to_string(items),
-                  "groups " + std::to_string(groups)};
+    made.lines = {"OPTIONS \"" + build_options(device, id) + "\"", "ENTRY \"" + entry + "\"",
+                  "GROUP " + std::to_string(items), "GROUPS " + std::to_string(groups)};
     return made;
 }
 
@@ -32,7 +32,7 @@ LaunchCase::Input input(const char* kind, cl_uint argument, const std::string& n
                         std::span<const Value> values)
 {
     const auto bytes = std::as_bytes(values);
-    return {kind + (" " + std::to_string(argument)),
+    return {kind + (", " + std::to_string(argument)),
             {name + ".bin", what, {}, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size())}};
 }
 

@@ -4,6 +4,8 @@
 #include "backends/vulkan/session.h"
 
 #include <array>
+#include <cstring>
+#include <fmt/ranges.h>
 
 namespace tetrace {
 
@@ -26,25 +28,25 @@ LaunchCase case_of(std::span<const EmbeddedKernel> kernels, const std::string& n
 {
     LaunchCase made;
     made.program = {name + ".spv", "the program, SPIR-V", {}, code_of(kernels, name)};
-    made.host = {"run_case.c", "a host in C, whose head explains case.txt",
+    made.host = {"run_case.c", "a host in C, whose head says how to build and run it",
                  "cc -O1 -o run_case run_case.c -l:libvulkan.so.1 && ./run_case",
                  code_of(vulkan_defects::embedded_kernels(), "run_case")};
-    made.lines = {"entry main", "groups " + std::to_string(groups)};
+    made.lines = {"GROUPS " + std::to_string(groups)};
     return made;
 }
 
-LaunchCase::Input case_input(const std::string& line, const std::string& name, const std::string& what,
+LaunchCase::Input case_input(const std::string& place, const std::string& name, const std::string& what,
                              std::span<const std::byte> bytes)
 {
-    return {line, {name + ".bin", what, {}, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size())}};
+    return {place, {name + ".bin", what, {}, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size())}};
 }
 
-/// The line of an array that is read as texels, or from a storage buffer.
-std::string array_line(bool in_texels, const TexelBinding& texels)
+/// The place of an array that is read as texels, or from a storage buffer.
+std::string array_place(bool in_texels, const TexelBinding& texels)
 {
-    const char* const kind = texels.format == vk::Format::eR32Uint ? "words " : "quads ";
+    const char* const kind = texels.format == vk::Format::eR32Uint ? "words, " : "quads, ";
     return in_texels ? kind + std::to_string(texels.binding)
-                     : "buffer " + std::to_string(texels.binding % FIRST_QUADS_BINDING);
+                     : "buffer, " + std::to_string(texels.binding % FIRST_QUADS_BINDING);
 }
 
 } // namespace
@@ -57,21 +59,21 @@ LaunchCase tile_case(const Device& device, const KernelId& kernel, const PackedS
     const bool starts_outside = kernel.task == Task::trace && launch.start_tet == NO_TET;
     const std::array<std::uint32_t, 5> constants = {launch.tile_height, starts_outside ? 1u : 0u, in_texels ? 1u : 0u,
                                                     in_texels ? 0u : STACK_TOP_OF_GPUS, 0u};
-    for (std::size_t i = 0; i < constants.size(); ++i)
-        made.lines.push_back("constant " + std::to_string(i) + " " + std::to_string(constants[i]));
-    made.inputs = {case_input("push", "launch", "push constants, LaunchParams of the program",
-                              std::as_bytes(std::span(&launch, 1)))};
+    std::array<std::uint32_t, sizeof(LaunchParams) / sizeof(std::uint32_t)> pushed{};
+    std::memcpy(pushed.data(), &launch, sizeof(launch));
+    made.lines.push_back(fmt::format("CONSTANTS {}", fmt::join(constants, ", ")));
+    made.lines.push_back(fmt::format("PUSHED {:#x}", fmt::join(pushed, ", ")));
     const auto buffers = scene_buffers(scene);
     std::uint32_t bound = 0; // bits: an array that is read as words and as quads is one storage buffer
     for (const TexelBinding& texels : texel_bindings(kernel.layout)) {
         const std::uint32_t array = texels.binding % FIRST_QUADS_BINDING;
         if (!in_texels && (bound >> array & 1u) != 0) continue;
         bound |= 1u << array;
-        made.inputs.push_back(case_input(array_line(in_texels, texels), buffers[array].name,
+        made.inputs.push_back(case_input(array_place(in_texels, texels), buffers[array].name,
                                          "an array of the packed scene", buffers[array].bytes));
     }
     if (kernel.task == Task::rays)
-        made.inputs.push_back(case_input(array_line(in_texels, rays_as_texels), "rays", "given rays, two quads each",
+        made.inputs.push_back(case_input(array_place(in_texels, rays_as_texels), "rays", "given rays, two quads each",
                                          std::as_bytes(rays)));
     made.output = OUTPUT_BINDING;
     return made;
@@ -80,9 +82,10 @@ LaunchCase tile_case(const Device& device, const KernelId& kernel, const PackedS
 LaunchCase defect_case(std::string_view name, const DefectLaunch& launch)
 {
     LaunchCase made = case_of(vulkan_defects::embedded_kernels(), std::string(name), launch.groups());
-    made.lines.push_back("constant 0 " + std::to_string(launch.group_items));
+    made.lines.push_back("CONSTANTS " + std::to_string(launch.group_items));
+    made.lines.push_back("PUSHED 0");
     const auto words = defect_words();
-    made.inputs = {case_input("buffer 0", "words", "what the kernel reads", std::as_bytes(std::span(words)))};
+    made.inputs = {case_input("buffer, 0", "words", "what the kernel reads", std::as_bytes(std::span(words)))};
     made.output = 1;
     return made;
 }

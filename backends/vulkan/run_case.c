@@ -1,233 +1,162 @@
-/* Runs the launch that case.txt describes on a Vulkan device, and compares its output. `tetrace dump` wrote both.
+/* Runs the launch of case.h on a Vulkan device, and compares its output. `tetrace dump` wrote both.
  * Build and run:  cc -O1 -o run_case run_case.c -l:libvulkan.so.1 && ./run_case [TEXT]
  * TEXT: a part of the device's name. Without it, the first device.
- * Exit code: 0, the output is the expected one; 1, it differs; 2, the case cannot run here.
- * Lines of case.txt:  program FILE   entry NAME   groups N   constant ID VALUE   push FILE   buffer BINDING FILE
- * words BINDING FILE and quads BINDING FILE (buffers read as texels)   output BINDING BYTES WORD (its first contents)
- * expect FILE   tolerance FILE (for each word). */
+ * Exit code: 0, the output is the expected one; 1, it differs; 2, the case cannot run here. */
+#include "case.h"
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <vulkan/vulkan.h>
 
-#define MAX 32 /* bindings and constants */
+enum kind { buffer, words, quads }; /* words, quads: a buffer that is read as texels */
+static const struct {
+    enum kind kind;
+    uint32_t binding;
+    const char* file;
+} inputs[] = {INPUTS};
+static const uint32_t constants[] = {CONSTANTS}; /* of specialization, by ID */
+static const uint32_t pushed[] = {PUSHED};
 
-static void fail(const char* what, long code)
+enum { INPUT_COUNT = sizeof(inputs) / sizeof(inputs[0]), CONSTANT_COUNT = sizeof(constants) / sizeof(constants[0]) };
+
+static VkPhysicalDevice physical;
+static VkDevice device;
+static VkDescriptorSet set;
+
+static void check(long code, const char* what)
 {
+    if (code == VK_SUCCESS) return;
     fprintf(stderr, "run_case: %s: %ld\n", what, code);
     exit(2);
-}
-
-static void check(VkResult result, const char* what)
-{
-    if (result != VK_SUCCESS) fail(what, result);
 }
 
 static void* read_file(const char* name, size_t* bytes)
 {
     FILE* file = fopen(name, "rb");
-    if (file == NULL || fseek(file, 0, SEEK_END) != 0) fail(name, 0);
+    check(file == NULL || fseek(file, 0, SEEK_END) != 0, name);
     *bytes = (size_t)ftell(file);
     rewind(file);
-    char* text = calloc(*bytes + 1, 1);
-    if (text == NULL || fread(text, 1, *bytes, file) != *bytes) fail(name, (long)*bytes);
+    char* contents = calloc(*bytes + 1, 1);
+    check(contents == NULL || fread(contents, 1, *bytes, file) != *bytes, name);
     fclose(file);
-    return text;
+    return contents;
 }
 
-static VkPhysicalDevice find_device(VkInstance instance, const char* text)
+/* Of Vulkan 1.1, with this text in its name. */
+static void find_device(const char* text)
 {
+    VkApplicationInfo application = {.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .apiVersion = VK_API_VERSION_1_1};
+    VkInstanceCreateInfo info = {VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, NULL, 0, &application};
+    VkInstance instance;
+    check(vkCreateInstance(&info, NULL, &instance), "vkCreateInstance");
     VkPhysicalDevice devices[64];
     uint32_t count = 64;
-    if (vkEnumeratePhysicalDevices(instance, &count, devices) < 0) fail("vkEnumeratePhysicalDevices", count);
-    for (uint32_t i = 0; i < count; ++i) {
+    check(vkEnumeratePhysicalDevices(instance, &count, devices) < 0, "vkEnumeratePhysicalDevices");
+    for (uint32_t i = 0; i < count && physical == NULL; ++i) {
         VkPhysicalDeviceProperties properties;
         vkGetPhysicalDeviceProperties(devices[i], &properties);
         if (properties.apiVersion < VK_API_VERSION_1_1 || strstr(properties.deviceName, text) == NULL) continue;
         printf("%s, driver 0x%x\n", properties.deviceName, properties.driverVersion);
-        return devices[i];
+        physical = devices[i];
     }
-    fail("no device of Vulkan 1.1 has this text in its name", count);
-    return NULL;
-}
-
-static uint32_t compute_family(VkPhysicalDevice physical)
-{
-    VkQueueFamilyProperties families[64];
-    uint32_t count = 64;
-    vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families);
-    for (uint32_t i = 0; i < count; ++i)
-        if (families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) return i;
-    fail("no queue computes", count);
-    return 0;
+    check(physical == NULL, "no device of Vulkan 1.1 has this text in its name");
 }
 
 /* A buffer that the host writes and reads in place. */
-static VkBuffer make_buffer(VkPhysicalDevice physical, VkDevice device, size_t bytes, void** mapped)
+static VkBuffer make_buffer(size_t bytes, void** mapped)
 {
-    VkBufferCreateInfo info = {VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
-    info.size = bytes < 16 ? 16 : bytes;
+    VkBufferCreateInfo info = {VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, NULL, 0, bytes < 16 ? 16 : bytes};
     info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
-    VkBuffer buffer;
-    check(vkCreateBuffer(device, &info, NULL, &buffer), "vkCreateBuffer");
+    VkBuffer made;
+    check(vkCreateBuffer(device, &info, NULL, &made), "vkCreateBuffer");
     VkMemoryRequirements needs;
-    vkGetBufferMemoryRequirements(device, buffer, &needs);
+    vkGetBufferMemoryRequirements(device, made, &needs);
     VkPhysicalDeviceMemoryProperties memories;
     vkGetPhysicalDeviceMemoryProperties(physical, &memories);
     const VkFlags wanted = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
     VkMemoryAllocateInfo allocation = {VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, NULL, needs.size, 0};
     while (!(needs.memoryTypeBits >> allocation.memoryTypeIndex & 1) ||
            (memories.memoryTypes[allocation.memoryTypeIndex].propertyFlags & wanted) != wanted)
-        if (++allocation.memoryTypeIndex == memories.memoryTypeCount) fail("no memory fits a buffer", (long)bytes);
+        check(++allocation.memoryTypeIndex == memories.memoryTypeCount, "no memory fits a buffer");
     VkDeviceMemory memory;
     check(vkAllocateMemory(device, &allocation, NULL, &memory), "vkAllocateMemory");
-    check(vkBindBufferMemory(device, buffer, memory, 0), "vkBindBufferMemory");
+    check(vkBindBufferMemory(device, made, memory, 0), "vkBindBufferMemory");
     check(vkMapMemory(device, memory, 0, VK_WHOLE_SIZE, 0, mapped), "vkMapMemory");
-    return buffer;
+    return made;
 }
 
-static int compare(const uint32_t* found, const uint32_t* wanted, const uint32_t* tolerances, size_t words)
+static VkDescriptorType type_of(enum kind kind)
 {
-    size_t wrong = 0;
-    for (size_t i = 0; i < words; ++i) {
-        const uint32_t a = found[i], b = wanted[i];
-        if ((a > b ? a - b : b - a) <= (tolerances != NULL ? tolerances[i] : 0)) continue;
-        if (wrong++ == 0) printf("word %zu is %u (0x%08x) instead of %u (0x%08x)\n", i, a, a, b, b);
-    }
-    printf("%zu of %zu words differ\n", wrong, words);
-    return wrong != 0;
+    return kind == buffer ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER : VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
 }
 
-/* What case.txt says. */
-static const char* entry = "main";
-static uint32_t groups = 1, push[64], constants[MAX];
-static VkSpecializationMapEntry constant_entries[MAX];
-static VkDescriptorSetLayoutBinding bindings[MAX];
-static VkDescriptorBufferInfo buffers[MAX];
-static VkBufferView views[MAX];
-static uint32_t constant_count, binding_count, push_bytes;
-static uint32_t *code, *output, *expected, *tolerances;
-static size_t code_bytes, output_bytes;
-
-static void read_buffer(VkPhysicalDevice physical, VkDevice device, const char* key, char* line, const char* text)
+/* Makes a buffer of the set. Returns its memory. */
+static void* bind_buffer(enum kind kind, uint32_t binding, size_t bytes)
 {
-    char file[4096] = "";
-    uint32_t word = 0, *contents = NULL;
-    size_t bytes = 0;
-    const uint32_t i = binding_count++;
     void* mapped;
-    if (i == MAX || sscanf(text, "%u %4095s", &bindings[i].binding, file) != 2) fail(line, MAX);
-    if (key[0] != 'o') contents = read_file(file, &bytes);
-    if (key[0] == 'o' && sscanf(text, "%*u %zu %u", &bytes, &word) != 2) fail(line, 0);
-    const VkBuffer buffer = make_buffer(physical, device, bytes, &mapped);
-    if (contents != NULL) memcpy(mapped, contents, bytes);
-    if (contents == NULL) {
-        output = mapped;
-        output_bytes = bytes;
-        for (size_t at = 0; at < bytes / 4; ++at)
-            output[at] = word;
-    }
-    const int is_texels = key[0] == 'w' || key[0] == 'q';
-    bindings[i].descriptorType =
-        is_texels ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    bindings[i].descriptorCount = 1;
-    bindings[i].stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
-    buffers[i] = (VkDescriptorBufferInfo){buffer, 0, VK_WHOLE_SIZE};
-    VkBufferViewCreateInfo view = {VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO};
-    view.buffer = buffer;
-    view.format = key[0] == 'q' ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32_UINT;
-    view.range = VK_WHOLE_SIZE;
-    if (is_texels) check(vkCreateBufferView(device, &view, NULL, &views[i]), "vkCreateBufferView");
+    VkDescriptorBufferInfo whole = {make_buffer(bytes, &mapped), 0, VK_WHOLE_SIZE};
+    const VkFormat format = kind == quads ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32_UINT;
+    VkBufferViewCreateInfo info = {
+        VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO, NULL, 0, whole.buffer, format, 0, VK_WHOLE_SIZE};
+    VkBufferView view = VK_NULL_HANDLE;
+    if (kind != buffer) check(vkCreateBufferView(device, &info, NULL, &view), "vkCreateBufferView");
+    VkWriteDescriptorSet write = {
+        VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, NULL, set, binding, 0, 1, type_of(kind), NULL, &whole, &view};
+    vkUpdateDescriptorSets(device, 1, &write, 0, NULL);
+    return mapped;
 }
 
-static void read_case(VkPhysicalDevice physical, VkDevice device)
+/* Makes the set, and the layout of a pipeline with it. */
+static VkPipelineLayout make_layout(void)
 {
-    size_t bytes;
-    char *next = NULL, *manifest = read_file("case.txt", &bytes);
-    for (char* line = strtok_r(manifest, "\n", &next); line != NULL; line = strtok_r(NULL, "\n", &next)) {
-        char key[32] = "", text[4096] = "";
-        if (line[0] == '#' || sscanf(line, "%31s %4095[^\n]", key, text) < 1) continue;
-        if (strcmp(key, "program") == 0) {
-            code = read_file(text, &code_bytes);
-        } else if (strcmp(key, "entry") == 0) {
-            entry = strdup(text);
-        } else if (strcmp(key, "groups") == 0) {
-            groups = (uint32_t)atoi(text);
-        } else if (strcmp(key, "constant") == 0) {
-            VkSpecializationMapEntry* one = &constant_entries[constant_count];
-            if (constant_count == MAX || sscanf(text, "%u %u", &one->constantID, &constants[constant_count]) != 2)
-                fail(line, MAX);
-            one->offset = 4 * constant_count++;
-            one->size = 4;
-        } else if (strcmp(key, "push") == 0) {
-            const void* file = read_file(text, &bytes);
-            if (bytes > sizeof(push)) fail(line, (long)bytes);
-            memcpy(push, file, push_bytes = (uint32_t)bytes);
-        } else if (strcmp(key, "buffer") == 0 || strcmp(key, "output") == 0 || strcmp(key, "words") == 0 ||
-                   strcmp(key, "quads") == 0) {
-            read_buffer(physical, device, key, line, text);
-        } else if (strcmp(key, "expect") == 0 || strcmp(key, "tolerance") == 0) {
-            *(key[0] == 'e' ? &expected : &tolerances) = read_file(text, &bytes);
-            if (bytes != output_bytes) fail(line, (long)bytes);
-        } else
-            fail(line, 0);
-    }
-    if (code == NULL || output == NULL || expected == NULL) fail("case.txt lacks a program, output or expect", 0);
-}
-
-static VkDescriptorSet make_set(VkDevice device, VkDescriptorSetLayout layout)
-{
-    const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, MAX},
-                                          {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, MAX}};
+    VkDescriptorSetLayoutBinding bindings[INPUT_COUNT + 1] = {
+        {OUTPUT, type_of(buffer), 1, VK_SHADER_STAGE_COMPUTE_BIT, NULL}};
+    VkDescriptorSetLayoutCreateInfo info = {VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO, NULL, 0, 1, bindings};
+    for (size_t i = 0; i < INPUT_COUNT; ++i)
+        bindings[info.bindingCount++] = (VkDescriptorSetLayoutBinding){inputs[i].binding, type_of(inputs[i].kind), 1,
+                                                                       VK_SHADER_STAGE_COMPUTE_BIT, NULL};
+    VkDescriptorSetLayout set_layout;
+    check(vkCreateDescriptorSetLayout(device, &info, NULL, &set_layout), "vkCreateDescriptorSetLayout");
+    const VkDescriptorPoolSize sizes[] = {{type_of(buffer), INPUT_COUNT + 1}, {type_of(words), INPUT_COUNT}};
     VkDescriptorPoolCreateInfo pool_info = {VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, NULL, 0, 1, 2, sizes};
     VkDescriptorPool pool;
     check(vkCreateDescriptorPool(device, &pool_info, NULL, &pool), "vkCreateDescriptorPool");
-    VkDescriptorSetAllocateInfo info = {VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, NULL, pool, 1, &layout};
-    VkDescriptorSet set;
-    check(vkAllocateDescriptorSets(device, &info, &set), "vkAllocateDescriptorSets");
-    for (uint32_t i = 0; i < binding_count; ++i) {
-        VkWriteDescriptorSet write = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
-        write.dstSet = set;
-        write.dstBinding = bindings[i].binding;
-        write.descriptorCount = 1;
-        write.descriptorType = bindings[i].descriptorType;
-        write.pBufferInfo = &buffers[i];
-        write.pTexelBufferView = &views[i];
-        vkUpdateDescriptorSets(device, 1, &write, 0, NULL);
-    }
-    return set;
+    VkDescriptorSetAllocateInfo set_info = {VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, NULL, pool, 1, &set_layout};
+    check(vkAllocateDescriptorSets(device, &set_info, &set), "vkAllocateDescriptorSets");
+    const VkPushConstantRange range = {VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(pushed)};
+    VkPipelineLayoutCreateInfo layout_info = {
+        VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO, NULL, 0, 1, &set_layout, 1, &range};
+    VkPipelineLayout layout;
+    check(vkCreatePipelineLayout(device, &layout_info, NULL, &layout), "vkCreatePipelineLayout");
+    return layout;
 }
 
-static VkPipeline make_pipeline(VkDevice device, VkPipelineLayout layout)
+static VkPipeline make_pipeline(VkPipelineLayout layout)
 {
-    VkShaderModuleCreateInfo module_info = {VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, NULL, 0, code_bytes, code};
-    VkSpecializationInfo values = {constant_count, constant_entries, sizeof(constants), constants};
-    VkComputePipelineCreateInfo info = {VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
-    info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-    info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-    info.stage.pName = entry;
-    info.stage.pSpecializationInfo = &values;
-    info.layout = layout;
-    check(vkCreateShaderModule(device, &module_info, NULL, &info.stage.module), "vkCreateShaderModule");
+    VkSpecializationMapEntry entries[CONSTANT_COUNT];
+    for (uint32_t i = 0; i < CONSTANT_COUNT; ++i)
+        entries[i] = (VkSpecializationMapEntry){i, 4 * i, 4};
+    VkSpecializationInfo values = {CONSTANT_COUNT, entries, sizeof(constants), constants};
+    VkShaderModuleCreateInfo module_info = {VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
+    module_info.pCode = read_file(PROGRAM, &module_info.codeSize);
+    VkShaderModule module;
+    check(vkCreateShaderModule(device, &module_info, NULL, &module), "vkCreateShaderModule");
+    VkPipelineShaderStageCreateInfo stage = {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                                             NULL,
+                                             0,
+                                             VK_SHADER_STAGE_COMPUTE_BIT,
+                                             module,
+                                             "main",
+                                             &values};
+    VkComputePipelineCreateInfo info = {VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO, NULL, 0, stage, layout};
     VkPipeline pipeline;
     check(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, NULL, &pipeline), "vkCreateComputePipelines");
     return pipeline;
 }
 
-static void run(VkDevice device, uint32_t family)
+static void run(uint32_t family, VkPipelineLayout layout)
 {
-    VkDescriptorSetLayoutCreateInfo set_info = {VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO, NULL, 0,
-                                                binding_count, bindings};
-    VkDescriptorSetLayout set_layout;
-    check(vkCreateDescriptorSetLayout(device, &set_info, NULL, &set_layout), "vkCreateDescriptorSetLayout");
-    VkPushConstantRange range = {VK_SHADER_STAGE_COMPUTE_BIT, 0, push_bytes};
-    VkPipelineLayoutCreateInfo layout_info = {
-        VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO, NULL, 0, 1, &set_layout, push_bytes != 0, &range};
-    VkPipelineLayout layout;
-    check(vkCreatePipelineLayout(device, &layout_info, NULL, &layout), "vkCreatePipelineLayout");
-    const VkPipeline pipeline = make_pipeline(device, layout);
-    const VkDescriptorSet set = make_set(device, set_layout);
     VkCommandPoolCreateInfo pool_info = {VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, NULL, 0, family};
     VkCommandPool pool;
     check(vkCreateCommandPool(device, &pool_info, NULL, &pool), "vkCreateCommandPool");
@@ -237,10 +166,10 @@ static void run(VkDevice device, uint32_t family)
     check(vkAllocateCommandBuffers(device, &info, &commands), "vkAllocateCommandBuffers");
     VkCommandBufferBeginInfo begin = {VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     check(vkBeginCommandBuffer(commands, &begin), "vkBeginCommandBuffer");
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, make_pipeline(layout));
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 1, &set, 0, NULL);
-    if (push_bytes != 0) vkCmdPushConstants(commands, layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, push_bytes, push);
-    vkCmdDispatch(commands, groups, 1, 1);
+    vkCmdPushConstants(commands, layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(pushed), pushed);
+    vkCmdDispatch(commands, GROUPS, 1, 1);
     VkMemoryBarrier barrier = {VK_STRUCTURE_TYPE_MEMORY_BARRIER, NULL, VK_ACCESS_SHADER_WRITE_BIT,
                                VK_ACCESS_HOST_READ_BIT};
     vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &barrier, 0,
@@ -248,28 +177,47 @@ static void run(VkDevice device, uint32_t family)
     check(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
     VkQueue queue;
     vkGetDeviceQueue(device, family, 0, &queue);
-    VkSubmitInfo submit = {VK_STRUCTURE_TYPE_SUBMIT_INFO};
-    submit.commandBufferCount = 1;
-    submit.pCommandBuffers = &commands;
+    VkSubmitInfo submit = {VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = 1, .pCommandBuffers = &commands};
     check(vkQueueSubmit(queue, 1, &submit, VK_NULL_HANDLE), "vkQueueSubmit");
     check(vkQueueWaitIdle(queue), "vkQueueWaitIdle");
 }
 
+static int compare(const uint32_t* found)
+{
+    size_t bytes, more, wrong = 0;
+    const uint32_t* wanted = read_file("expected.bin", &bytes);
+    const uint32_t* tolerances = read_file("tolerance.bin", &more);
+    check(bytes != 4 * OUTPUT_WORDS || more != bytes, "size of expected.bin or tolerance.bin");
+    for (size_t i = 0; i < OUTPUT_WORDS; ++i) {
+        const uint32_t a = found[i], b = wanted[i];
+        if ((a > b ? a - b : b - a) <= tolerances[i]) continue;
+        if (wrong++ == 0) printf("word %zu is %u (0x%08x) instead of %u (0x%08x)\n", i, a, a, b, b);
+    }
+    printf("%zu of %d words differ\n", wrong, OUTPUT_WORDS);
+    return wrong != 0;
+}
+
 int main(int argc, char** argv)
 {
-    VkApplicationInfo application = {VK_STRUCTURE_TYPE_APPLICATION_INFO};
-    application.apiVersion = VK_API_VERSION_1_1;
-    VkInstanceCreateInfo instance_info = {VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, NULL, 0, &application};
-    VkInstance instance;
-    check(vkCreateInstance(&instance_info, NULL, &instance), "vkCreateInstance");
-    const VkPhysicalDevice physical = find_device(instance, argc > 1 ? argv[1] : "");
+    find_device(argc > 1 ? argv[1] : "");
+    VkQueueFamilyProperties families[64];
+    uint32_t count = 64, family = 0;
+    vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families);
+    while (!(families[family].queueFlags & VK_QUEUE_COMPUTE_BIT))
+        check(++family == count, "no queue computes");
     const float priority = 1;
-    VkDeviceQueueCreateInfo queue_info = {
-        VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, NULL, 0, compute_family(physical), 1, &priority};
-    VkDeviceCreateInfo device_info = {VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, NULL, 0, 1, &queue_info};
-    VkDevice device;
-    check(vkCreateDevice(physical, &device_info, NULL, &device), "vkCreateDevice");
-    read_case(physical, device);
-    run(device, queue_info.queueFamilyIndex);
-    return compare(output, expected, tolerances, output_bytes / 4);
+    VkDeviceQueueCreateInfo queue = {VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, NULL, 0, family, 1, &priority};
+    VkDeviceCreateInfo info = {VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, NULL, 0, 1, &queue};
+    check(vkCreateDevice(physical, &info, NULL, &device), "vkCreateDevice");
+
+    const VkPipelineLayout layout = make_layout();
+    for (size_t i = 0, bytes; i < INPUT_COUNT; ++i) {
+        const void* contents = read_file(inputs[i].file, &bytes);
+        memcpy(bind_buffer(inputs[i].kind, inputs[i].binding, bytes), contents, bytes);
+    }
+    uint32_t* output = bind_buffer(buffer, OUTPUT, 4 * OUTPUT_WORDS);
+    for (size_t i = 0; i < OUTPUT_WORDS; ++i)
+        output[i] = OUTPUT_BEFORE;
+    run(family, layout);
+    return compare(output);
 }

@@ -6,6 +6,7 @@
 #include "bench/rows/row_tracing.h"
 #include "bench/rows/rows.h"
 #include "core/base/error.h"
+#include "core/base/printable.h"
 #include "core/device/defects.h"
 #include "core/device/given_quads.h"
 #include "core/device/launch.h"
@@ -25,7 +26,7 @@ using CaseWords = std::vector<std::uint32_t>;
 
 /// What a program should write: its whole output, and how far each word may be off.
 struct CaseOutput {
-    CaseWords expected, tolerances; ///< without tolerances each word is exact
+    CaseWords expected, tolerances;
 };
 
 KernelFile words_file(const char* name, const char* what, const CaseWords& words)
@@ -36,28 +37,26 @@ KernelFile words_file(const char* name, const char* what, const CaseWords& words
 DumpedCase files_of_case(const LaunchCase& launch, const CaseOutput& output, const std::string& title)
 {
     const BuildIdentity build = build_identity();
-    std::string manifest = fmt::format("# {}\n# written by tetrace {} ({})\nprogram {}\n", title, build.version,
-                                       build.commit, launch.program.name);
+    std::string macros = fmt::format("// {}, written by tetrace {} ({}).\n#define PROGRAM \"{}\"\n",
+                                     printable_line(title), build.version, build.commit, launch.program.name);
     for (const std::string& line : launch.lines)
-        manifest += line + "\n";
-    DumpedCase made{title, {{"case.txt", "the launch, line by line", {}, {}}, launch.host}};
+        macros += "#define " + line + "\n";
+    macros += "#define INPUTS";
+    DumpedCase made{title, {{"case.h", "the launch, as macros", {}, {}}, launch.host}};
     made.files.push_back(launch.program);
     for (const LaunchCase::Input& input : launch.inputs) {
-        manifest += fmt::format("{} {}\n", input.line, input.file.name);
+        macros += fmt::format(" \\\n    {{{}, \"{}\"}},", input.place, input.file.name);
         if (std::ranges::find(made.files, input.file.name, &KernelFile::name) == made.files.end())
             made.files.push_back(input.file);
     }
-    manifest += fmt::format("output {} {} {}\nexpect expected.bin\n", launch.output,
-                            output.expected.size() * sizeof(std::uint32_t), POISON);
+    macros += fmt::format("\n#define OUTPUT {}\n#define OUTPUT_WORDS {}\n#define OUTPUT_BEFORE {:#x}u\n", launch.output,
+                          output.expected.size(), POISON);
     made.files.push_back(words_file("expected.bin", "the whole output after the launch, in words", output.expected));
-    if (!output.tolerances.empty()) {
-        manifest += "tolerance tolerance.bin\n";
-        made.files.push_back(words_file("tolerance.bin",
-                                        "how far each word may be off: t, u and v of a hit by 3 units in the last "
-                                        "place, as division may be; without this line of case.txt, by none",
-                                        output.tolerances));
-    }
-    made.files.front().bytes = std::move(manifest);
+    made.files.push_back(words_file("tolerance.bin",
+                                    "how far each word may be off: t, u and v of a hit by 3 units in the last place, "
+                                    "as division may be; all else by none",
+                                    output.tolerances));
+    made.files.front().bytes = std::move(macros);
     return made;
 }
 
@@ -76,6 +75,7 @@ DumpedCase defect_case(const Backend& backend, std::string_view name)
     if (!launch) refuse_case(backend);
     CaseOutput output;
     output.expected = expected_words(defect, chosen.launch.items);
+    output.tolerances.assign(output.expected.size(), 0);
     return files_of_case(*launch, output,
                          fmt::format("{} on {}: {}; {} {}", name, backend.name(), defect.what,
                                      defect.is_stressor ? "reports of the kind:" : "known in", defect.known));

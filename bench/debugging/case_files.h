@@ -10,7 +10,7 @@ namespace tetrace {
 /// A launch of one work-group and what it should write, for those who do not have tetrace.
 struct DumpedCase {
     std::string title;
-    std::vector<KernelFile> files; ///< case.txt, all that it names, and a host that runs it
+    std::vector<KernelFile> files; ///< case.h, all that it names, and a host that runs it
 };
 
 /// The case of --defect; or of --scene: one_kernel() on the tile of --pixel, whose output is openmp's. It is as the

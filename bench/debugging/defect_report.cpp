@@ -390,26 +390,21 @@ std::vector<std::string> unknown_of(const std::vector<DefectRun>& runs, const Ex
     return {sentences.begin(), sentences.end()};
 }
 
-CheckVerdict verdict_on(const std::vector<DefectRun>& runs)
+/// Empty if none ran.
+std::optional<CheckVerdict> verdict_on(const std::vector<DefectRun>& runs, bool has_expectations)
 {
-    std::set<std::string> devices;
-    std::size_t ran = 0;
     const bool stresses = std::ranges::any_of(runs, [](const DefectRun& run) { return run.defect->is_stressor; });
+    CheckTally tally{stresses ? "kernel" : "reduced kernel", stresses ? "kernels" : "reduced kernels"};
     for (const DefectRun& run : runs)
-        if (finding_of(run)) {
-            devices.insert(label_of(run.backend, run.device_index));
-            ++ran;
-        }
-    return verdict_by_expectations(
-        fmt::format("{} on {}",
-                    counted(ran, stresses ? "kernel" : "reduced kernel", stresses ? "kernels" : "reduced kernels"),
-                    counted(devices.size(), "device", "devices")),
-        deviations_of(runs));
+        if (finding_of(run)) tally.add(label_of(run.backend, run.device_index), fails(run.judged.judgement));
+    if (tally.judged == 0) return std::nullopt;
+    return has_expectations ? verdict_by_expectations(tally.judged_text(), deviations_of(runs))
+                            : verdict_by_count(tally);
 }
 
 } // namespace
 
-ShownDefects shown_defects(const ResultValue& section)
+ShownDefects shown_defects(const ResultValue& section, const Sheet& files)
 {
     std::vector<ShownRun> runs;
     for (const ResultValue& run : section.at("defects").items())
@@ -431,6 +426,7 @@ ShownDefects shown_defects(const ResultValue& section)
     for (const ResultValue& sentence : section.at("missing_devices").items())
         shown.sheet.labelled("Missing", printable_text(sentence.text()));
     shown.sheet.append(expectation_lines(section));
+    shown.sheet.append(files);
     shown.sheet.append(verdict_line(section));
     return shown;
 }
@@ -443,17 +439,18 @@ Report defect_report(const std::vector<DefectRun>& runs, const std::vector<std::
     for (const DefectRun& run : runs)
         section["defects"].push_back(run_json(run));
     section["missing_devices"] = missing;
-    if (expectations != nullptr) {
+    if (expectations != nullptr)
         set_expectations(section, *expectations, implementations_of(runs), deviations_of(runs),
                          unmentioned_of(runs, *expectations), unknown_of(runs, *expectations));
-        set_verdict(section, verdict_on(runs));
-    }
+    set_verdict(section, verdict_on(runs, expectations != nullptr));
     const nlohmann::json json = {{"tetrace", std::move(section)}};
-    ShownDefects shown = shown_defects(ResultValue(json, "the defects").at("tetrace"));
+    Sheet files;
+    if (options.junit && *options.junit != "-") files.labelled("JUnit", options.junit->string());
+    if (options.out) files.labelled("Result", options.out->string());
+    const ResultValue defects = ResultValue(json, "the defects").at("tetrace");
+    ShownDefects shown = shown_defects(defects, files);
     Report report{std::move(shown.sheet), std::move(shown.table), json};
-    report.markdown = report.sheet.markdown();
-    if (options.junit && *options.junit != "-") report.sheet.labelled("JUnit", options.junit->string());
-    if (options.out) report.sheet.labelled("Result", options.out->string());
+    report.markdown = shown_defects(defects).sheet.markdown();
     return report;
 }
 

@@ -54,9 +54,9 @@ struct ShownDefects {
     Table table;
 };
 
-/// What `check --defects` prints, and `show` prints again. section: of its result. Throws Error{invalid_input} naming
-/// the key that is missing or of another kind.
-[[nodiscard]] ShownDefects shown_defects(const ResultValue& section);
+/// What `check --defects` prints, and `show` prints again. section: of its result. files: lines before the verdict, on
+/// what the run wrote. Throws Error{invalid_input} naming the key that is missing or of another kind.
+[[nodiscard]] ShownDefects shown_defects(const ResultValue& section, const Sheet& files = {});
 
 /// Defects against drivers: a line per defect, a column per device; what each defect is, and the first wrong word of
 /// each that was seen. missing: sentences on backends without a device. expectations: those that the runs were judged

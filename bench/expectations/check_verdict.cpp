@@ -12,29 +12,17 @@ namespace tetrace {
 
 namespace {
 
-/// What a check counts.
-struct Tally {
-    std::size_t judged = 0, unanswered = 0;
-    std::set<std::string> devices, failed_on;
-    std::size_t failed = 0;
+struct RowTally : CheckTally {
+    std::size_t unanswered = 0;
 
-    void add(const RowRecord& row, const Judged& result, bool is_required)
+    void add_row(const RowRecord& row, const Judged& result, bool is_required)
     {
         const Conformity conformity = conformity_of(row);
         const bool has_answer = conformity != Conformity::unsupported && conformity != Conformity::skipped;
         if (!has_answer && !is_required && !fails(result.judgement)) return;
         const bool is_missing = is_required && !has_answer && !result.is_as_expected();
-        ++judged;
         unanswered += is_missing && !fails(result.judgement) ? 1 : 0;
-        devices.insert(device_label(row.key));
-        if (!is_missing && !fails(result.judgement)) return;
-        ++failed;
-        failed_on.insert(device_label(row.key));
-    }
-
-    [[nodiscard]] std::string judged_text() const
-    {
-        return fmt::format("{} on {}", counted(judged, "row", "rows"), counted(devices.size(), "device", "devices"));
+        add(device_label(row.key), is_missing || fails(result.judgement));
     }
 };
 
@@ -46,11 +34,33 @@ std::size_t count_of(const std::vector<Deviation>& deviations, Judgement judgeme
 
 } // namespace
 
+void CheckTally::add(const std::string& device, bool fails)
+{
+    ++judged;
+    devices.insert(device);
+    if (!fails) return;
+    ++failed;
+    failed_on.insert(device);
+}
+
+std::string CheckTally::judged_text() const
+{
+    return fmt::format("{} on {}", counted(judged, one, many), counted(devices.size(), "device", "devices"));
+}
+
 Sheet CheckVerdict::line() const
 {
     Sheet sheet;
     sheet.labelled(conforms ? "Conforms" : "FAILED", text);
     return sheet;
+}
+
+CheckVerdict verdict_by_count(const CheckTally& tally, const std::string& end)
+{
+    if (tally.failed == 0) return {true, tally.judged_text() + end};
+    return {false, fmt::format("{} of {}, {}on {}{}", tally.failed, counted(tally.judged, tally.one, tally.many),
+                               tally.failed > 1 && tally.failed_on.size() == 1 ? "all " : "",
+                               fmt::join(tally.failed_on, ", "), end)};
 }
 
 CheckVerdict verdict_by_expectations(const std::string& judged, const std::vector<Deviation>& deviations,
@@ -72,19 +82,16 @@ CheckVerdict verdict_by_expectations(const std::string& judged, const std::vecto
 std::optional<CheckVerdict> verdict_of(const std::vector<RowRecord>& rows, const CheckJudgement& judgement,
                                        const std::vector<std::string>& required)
 {
-    Tally tally;
+    RowTally tally{{"row", "rows"}};
     for (std::size_t i = 0; i < rows.size(); ++i)
-        tally.add(rows[i], judgement.rows[i], std::ranges::find(required, rows[i].key.backend) != required.end());
+        tally.add_row(rows[i], judgement.rows[i], std::ranges::find(required, rows[i].key.backend) != required.end());
     if (tally.judged == 0) return std::nullopt;
     const std::size_t others = rows.size() - tally.judged;
     const std::string end =
         others == 0 ? "." : fmt::format("; {} more {} no result.", others, others == 1 ? "has" : "have");
     if (judgement.has_expectations)
         return verdict_by_expectations(tally.judged_text(), judgement.deviations, tally.unanswered, end);
-    if (tally.failed == 0) return CheckVerdict{true, tally.judged_text() + end};
-    return CheckVerdict{false, fmt::format("{} of {}, {}on {}{}", tally.failed, counted(tally.judged, "row", "rows"),
-                                           tally.failed > 1 && tally.failed_on.size() == 1 ? "all " : "",
-                                           fmt::join(tally.failed_on, ", "), end)};
+    return verdict_by_count(tally, end);
 }
 
 void set_verdict(nlohmann::json& section, const std::optional<CheckVerdict>& verdict)

@@ -19,11 +19,24 @@ struct CheckVerdict {
     [[nodiscard]] Sheet line() const;
 };
 
+/// What a check counts: rows, or reduced kernels.
+struct CheckTally {
+    const char *one, *many; ///< "row", "rows"
+    std::size_t judged = 0, failed = 0;
+    std::set<std::string> devices, failed_on; ///< labels
+
+    void add(const std::string& device, bool fails);
+    [[nodiscard]] std::string judged_text() const; ///< "13 rows on 2 devices"
+};
+
 /// Empty if no row was judged. judgement: of these rows. required: backends of which each row must have an answer, or
 /// be without one as expected.
 [[nodiscard]] std::optional<CheckVerdict> verdict_of(const std::vector<RowRecord>& rows,
                                                      const CheckJudgement& judgement,
                                                      const std::vector<std::string>& required);
+
+/// The verdict without expectations. end: of the sentence.
+[[nodiscard]] CheckVerdict verdict_by_count(const CheckTally& tally, const std::string& end = ".");
 
 /// The verdict on what was judged by expectations. judged: "13 rows on 2 devices". unanswered: how many of them were
 /// required to have a result and have none. end: of the sentence.

@@ -195,15 +195,25 @@ std::string name_without_size(const ResultRow& row)
     return name;
 }
 
-/// The other file's row of the same name, in either file with or without the size of images that it has.
+std::string name_without_scene(const ResultRow& row)
+{
+    std::string name = row.name;
+    if (const std::size_t at = name.find("/" + row.scene + "/"); at != std::string::npos)
+        name.erase(at, row.scene.size() + 1);
+    return name;
+}
+
+/// The other file's row of the same name, in either file with or without the size of images that it has, or with
+/// another name of the same scene, as of a .tet file.
 const ResultRow* partner_of(const ResultFile& file, const ResultRow& row, const ResultFile& other)
 {
     if (const ResultRow* same = other.find_row(row.name); same != nullptr || row.scene.empty()) return same;
     const ResultScene* const scene = file.find_scene(row.scene); // null of one that could not be loaded
     const auto found = std::ranges::find_if(other.rows, [&](const ResultRow& one) {
-        if (scene == nullptr || name_without_size(one) != name_without_size(row)) return false;
-        const ResultScene* const its = other.find_scene(one.scene);
-        return its != nullptr && its->width == scene->width && its->height == scene->height;
+        const ResultScene* const its = scene != nullptr ? other.find_scene(one.scene) : nullptr;
+        if (its == nullptr || its->width != scene->width || its->height != scene->height) return false;
+        return name_without_size(one) == name_without_size(row) ||
+               (its->hash == scene->hash && name_without_scene(one) == name_without_scene(row));
     });
     return found == other.rows.end() ? nullptr : &*found;
 }
@@ -260,12 +270,15 @@ void require_rows(const ResultFile& before, const ResultFile& after, const std::
     if (std::ranges::none_of(rows, [](const ComparedRow& row) { return is_timed(row.before); }))
         reject_pair(before, after,
                     "A lacks rows with samples to compare with; 'tetrace bench --out FILE.json' times rows");
-    const auto is_common = [](const ComparedRow& row) { return row.before != nullptr && row.after != nullptr; };
-    if (std::ranges::none_of(rows, is_common))
-        reject_pair(
-            before, after,
-            fmt::format("they share no row; A has {} and similar rows, B {}", rows.front().name(),
-                        after.timed_rows().empty() ? "none" : after.timed_rows().front()->name + " and similar rows"));
+    const auto is_common = [](const ComparedRow& row) { return is_timed(row.before) && row.after != nullptr; };
+    if (std::ranges::any_of(rows, is_common)) return;
+    const std::string recipe = rows_recipe(before, after);
+    const auto timed = std::ranges::find_if(rows, [](const ComparedRow& row) { return is_timed(row.before); });
+    reject_pair(
+        before, after,
+        fmt::format("they share no row that A times; A has {} and similar rows, B {}{}{}", timed->name(),
+                    after.timed_rows().empty() ? "none" : after.timed_rows().front()->name + " and similar rows",
+                    recipe.empty() ? "" : "; ", recipe));
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 
 #include "bench/options/option_values.h"
 #include "bench/terminal/text.h"
+#include "core/base/printable.h"
 #include "core/rays/camera_set.h"
 #include "scenes/pinned.h"
 
@@ -9,6 +10,7 @@
 #include <charconv>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <set>
 
 namespace tetrace {
 
@@ -78,6 +80,40 @@ void add_rays(WorkRecipe& recipe, const ResultScene& a, const ResultScene& b)
     if (a.width != b.width || a.height != b.height) add(recipe, "--size", fmt::format("{}x{}", a.width, a.height));
 }
 
+/// The values of that key in the rows that have times.
+std::set<std::string> values_of(const ResultFile& file, const char* key)
+{
+    std::set<std::string> values;
+    const ResultValue section = file.section();
+    const std::vector<ResultValue> rows = section.at("rows").items();
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        if (const auto value = rows[i].find(key); value && !file.rows[i].samples_s.empty())
+            values.insert(value->line());
+    return values;
+}
+
+/// What B takes as A's scene: its own name of the same scene, a pinned one's name, or a .tet file.
+std::string scene_for(const ResultFile& b, const ResultFile& a, const std::string& name)
+{
+    const ResultScene* const scene = a.find_scene(name);
+    if (scene == nullptr) return name;
+    if (const auto same = std::ranges::find(b.scenes, scene->hash, &ResultScene::hash); same != b.scenes.end())
+        return same->name;
+    if (const PinnedScene* const pinned = pinned_of(*scene)) return std::string(pinned->name);
+    const ResultValue section = a.section();
+    for (const ResultValue& one : section.at("scenes").items())
+        if (one.at("name").line() == name && one.text_at("file").ends_with(".tet")) return one.at("file").line();
+    return name;
+}
+
+std::set<std::string> scenes_for(const ResultFile& b, const ResultFile& a, const std::set<std::string>& names)
+{
+    std::set<std::string> scenes;
+    for (const std::string& name : names)
+        scenes.insert(scene_for(b, a, name));
+    return scenes;
+}
+
 } // namespace
 
 std::string WorkRecipe::text() const
@@ -86,6 +122,22 @@ std::string WorkRecipe::text() const
         options.empty() ? ""
                         : fmt::format("measure B with {}{}", options, usual_tets ? ", without options of tets" : "");
     return measure + (measure.empty() || obstacle.empty() ? "" : "; ") + obstacle;
+}
+
+std::string rows_recipe(const ResultFile& a, const ResultFile& b)
+{
+    if (const std::string command = a.section().text_at("command"); !command.empty())
+        return fmt::format("A was measured by `{}`", printable_line(command));
+    if (a.head.verb != "bench")
+        return a.head.verb == b.head.verb ? "" : fmt::format("measure B with 'tetrace {}'", a.head.verb);
+    WorkRecipe recipe;
+    for (const char* const key : {"scene", "rays", "math", "order", "layout", "method", "backend"}) {
+        std::set<std::string> values = values_of(a, key);
+        if (std::string_view(key) == "scene") values = scenes_for(b, a, values);
+        if (!std::ranges::includes(values_of(b, key), values))
+            add(recipe, fmt::format("--{}", key), fmt::format("{}", fmt::join(values, ",")));
+    }
+    return recipe.text();
 }
 
 WorkRecipe work_recipe(const ResultScene& a, const ResultScene& b, bool same_geometry)

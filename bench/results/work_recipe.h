@@ -21,4 +21,8 @@ struct WorkRecipe {
 /// version of tetrace made, and that are not pinned (scenes/pinned.h), can be out of reach.
 [[nodiscard]] WorkRecipe work_recipe(const ResultScene& a, const ResultScene& b, bool same_geometry);
 
+/// For results that share no row: A's command line, if A has it; else the options that select A's rows, each with its
+/// values in A, where B lacks one of these, or A's verb. As a sentence's end, or empty.
+[[nodiscard]] std::string rows_recipe(const ResultFile& a, const ResultFile& b);
+
 } // namespace tetrace

@@ -81,16 +81,16 @@ struct KernelFile {
     std::string bytes;
 };
 
-/// A launch of one work-group as plain data: all that a host needs that knows nothing of tetrace. What the lines of its
-/// case.txt mean is at the head of backends/<api>/run_case.c. The expected output is not a part of it.
+/// A launch of one work-group as plain data: all that a host needs that knows nothing of tetrace. case.h has it as
+/// macros, for backends/<api>/run_case.c. The expected output is not a part of it.
 struct LaunchCase {
-    /// A file that a line of case.txt names after these words: "buffer 5".
+    /// A file, and its entry in the macro INPUTS before its name: "buffer, 5".
     struct Input {
-        std::string line;
+        std::string place;
         KernelFile file;
     };
     KernelFile program, host;       ///< host: run_case.c, with the command that compiles and runs it
-    std::vector<std::string> lines; ///< of case.txt, after the program's
+    std::vector<std::string> lines; ///< "NAME VALUE" of the API's own macros
     std::vector<Input> inputs;
     std::uint32_t output = 0; ///< argument (OpenCL) or binding (Vulkan) of what the program writes
 };

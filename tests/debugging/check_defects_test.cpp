@@ -47,9 +47,10 @@ TEST_F(CheckDefects, of_a_required_backend_that_is_not_here_fails_with_its_reaso
 
 TEST_F(CheckDefects, needs_no_scene_and_is_good_where_nothing_is_seen)
 {
-    const Ended ended = run("check --defects --backend openmp,cuda-host");
+    const Ended ended = run("check --defects --backend openmp,cuda-host --out defects.json");
     EXPECT_EQ(ended.code, 0) << ended.errors;
     EXPECT_TRUE(contains(ended.out, "6 reduced kernels ran: 0 show their defect")) << ended.out;
+    EXPECT_TRUE(ended.out.ends_with("Conforms  6 reduced kernels on 2 devices.\n")) << ended.out;
     EXPECT_EQ(run("check --defects --backend embree").code, 3);
     write_file(folder_ / "openmp.json", R"({"defects": {"loop": "right"}})");
     const Ended expecting = run("check --defects --backend openmp --expect openmp.json");

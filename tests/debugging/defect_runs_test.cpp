@@ -78,6 +78,7 @@ TEST(DefectRuns, fail_where_one_item_is_wrong_and_name_it)
     const Report report = defect_report(runs, {}, {});
     EXPECT_TRUE(contains(report.sheet.text(), "SEEN: 1 of 16 items")) << report.sheet.text();
     EXPECT_TRUE(contains(report.sheet.text(), "item 5 returns 6 instead of 5")) << report.sheet.text();
+    EXPECT_TRUE(contains(report.sheet.text(), "FAILED    1 of 3 reduced kernels, on bad.")) << report.sheet.text();
     const std::string xml = defect_junit(runs);
     EXPECT_TRUE(contains(xml, "failures=\"1\" errors=\"0\"")) << xml;
     EXPECT_TRUE(contains(xml, "classname=\"tetrace.bad.a-device\" name=\"defect/value_after_divergent_loop\"")) << xml;

@@ -324,6 +324,34 @@ TEST_F(ResultComparisons, a_refusal_names_the_options_that_bring_back_the_first_
     EXPECT_TRUE(contains(mesh, "A's cubes was made from another mesh file, of hash 00000000000000aa")) << mesh;
 }
 
+TEST_F(ResultComparisons, a_refusal_of_results_without_a_common_row_says_how_a_was_measured)
+{
+    Json before = result_of({timed_row("one", 1)}), after = result_of({timed_row("two", 1)});
+    before["tetrace"]["rows"][0]["rays"] = "shadow";
+    after["tetrace"]["rows"][0]["rays"] = "primary";
+    before["tetrace"]["rows"][0]["layout"] = after["tetrace"]["rows"][0]["layout"] = "bvh2";
+    const std::string options = error_of([&] { (void)compare(before, after); });
+    EXPECT_TRUE(options.ends_with("; measure B with --rays shadow")) << options;
+    before["tetrace"]["rows"].push_back(untimed_row("two", "skipped"));
+    EXPECT_EQ(error_of([&] { (void)compare(before, after); }), options) << "A has no rate of the row that they share";
+    Json packed = before;
+    packed["tetrace"]["scenes"][0]["hash"] = "02e9d84d743616a3"; // bunny-1
+    EXPECT_TRUE(contains(error_of([&] { (void)compare(packed, after); }), "measure B with --scene bunny-1 --rays"));
+    before["tetrace"]["command"] = "tetrace bench --rays shadow,ao";
+    const std::string command = error_of([&] { (void)compare(before, after); });
+    EXPECT_TRUE(command.ends_with("; A was measured by `tetrace bench --rays shadow,ao`")) << command;
+}
+
+TEST_F(ResultComparisons, of_a_scene_with_two_names_pair_its_rows)
+{
+    const Json before = result_of({timed_row("cdt/maria/cubes/primary", 1)});
+    Json after = result_of({timed_row("cdt/maria/packed/primary", 1)});
+    after["tetrace"]["scenes"][0]["name"] = after["tetrace"]["rows"][0]["scene"] = "packed";
+    EXPECT_EQ(compare(before, after).rows.at(0).verdict(), "SAME");
+    after["tetrace"]["scenes"][0]["hash"] = "0000000000000000";
+    EXPECT_TRUE(contains(error_of([&] { (void)compare(before, after); }), "they share no row"));
+}
+
 TEST_F(ResultComparisons, of_nothing_is_refused)
 {
     const auto refused = [&](const Json& before, const Json& after, const std::string& filter = {}) {
