@@ -22,7 +22,8 @@
 // WALKS_PATHS                                     project.h                    structure_cdt.h
 // WalkStart, WALK_START_AT, WALK_START_IN         walk_by_records.h            walk_along_paths.h, trace_along_paths.h
 // TRAVERSAL_ENTRIES, _AT_ROOT, _GOES_ON           bvh2.h, bvh4.h, cwbvh.h      bvh/refill_cuda.h
-// REFILLS_LANES, ENOUGH_LANES, STEPS_PER_VOTE     refill_cuda.h, tests         backends/cuda/kernel.cu
+// REFILLS_LANES                                   refill_cuda.h                backends/cuda/kernel.cu
+// ENOUGH_LANES                                    refill_cuda.h, tests         refill_cuda.h
 // TAKES_RAYS, STARTS_IN_TETS                      methods, entry.h, bvh        entry files: which tasks there are
 // SEARCHES_EXITS                                  search.h                     entry files
 // CROSSES_TETS                                    segments.h                   entry files

@@ -1,5 +1,5 @@
 // Persistent warps whose lanes fetch rays for themselves: if few of a warp's lanes still have a ray, the others write
-// their hits and start new rays, in the middle of the ways of those few.
+// their hits and start new rays, while those few are still on their way.
 //
 // Source: Aila and Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009, section 3.3, and its
 // addendum with Karras, 2012, in whose released kernel for Kepler "few" is less than 20 of 32. There, the lanes in the

@@ -253,7 +253,10 @@ std::vector<RowField> identity_fields()
                  const Task task = asked_task(row.key.kernel.task);
                  return task == Task::trace ? json() : json(name_of(task));
              },
-             [](RowRecord& row, const ResultValue& value) { read_into(row.key.kernel.task, value); }),
+             [](RowRecord& row, const ResultValue& value) {
+                 read_into(row.key.kernel.task, value);
+                 if (!traits_of(row.key.kernel.task).crosses) value.reject("is not a task that rows name");
+             }),
          recorded(R"({ "enum": ["segments"] })", optional, "left out of rows that trace"), csv("task")},
         {"", "rays", &RowKey::rays,
          recorded(R"({ "enum": ["primary", "shadow", "ao", "diffuse", "random"] })", required, "their kind"),

@@ -144,7 +144,10 @@ std::vector<ReportRow> report_rows(const ResultFile& result, std::size_t file)
             row.api += ", " + counted(threads, "thread", "threads");
         row.device = result.head.shown(result.rows[i].device);
         read_into(row.rays, items[i].at("rays"));
-        if (const auto task = items[i].find("task")) read_into(row.task, *task);
+        if (const auto task = items[i].find("task")) {
+            read_into(row.task, *task);
+            if (!traits_of(row.task).crosses) task->reject("is not a task that rows name");
+        }
         read_shares(row, items[i]);
         row.rate = rate_of(items[i], result.rows[i].samples_s);
         if (row.rate && !row.row->device_kind) items[i].reject("has a rate and no device");

@@ -95,7 +95,7 @@ KERNEL_FN Vec3 corner_of(SceneView scene, uint quad)
     {                                                                                                                  \
         uint carry = 0u;                                                                                               \
         KEEP_LOOP                                                                                                      \
-        for (uint word = up; word < WIDE_WORDS; ++word) {                                                              \
+        for (uint word = (up); word < WIDE_WORDS; ++word) {                                                            \
             uint multiplied = wide[SLOT(from) + word - (up)];                                                          \
             uint old = wide[SLOT(to) + word];                                                                          \
             uint part = multiplied * (factor) + carry;                                                                 \
@@ -190,3 +190,10 @@ RARE_FN bool is_before_exactly(SceneView scene, Ray ray, uint a, real depth_a, u
     uint number_b = FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * b).w;
     return any == 0u ? number_a < number_b : IS_NEGATIVE_WIDE(4u);
 }
+#undef IS_NEGATIVE_WIDE
+#undef ADD_FIXED_PRODUCT
+#undef ADD_PRODUCT
+#undef NEGATE_WIDE
+#undef SET_WIDE
+#undef SLOT
+#undef WIDE_WORDS

@@ -410,7 +410,8 @@ TEST_F(ReportPage, values_that_cannot_be_drawn_are_named_with_their_key)
     EXPECT_TRUE(contains(error_with(bench_json(), "/rows/0/rates/mrays_per_s", 0), "rows[0].rates.mrays_per_s"));
     EXPECT_TRUE(contains(error_with(bench_json(), "/rows/0/rates/mrays_per_s", nullptr), "rows[0].rates.mrays_per_s"));
     EXPECT_TRUE(contains(error_with(bench_json(), "/rows/1/times/median_s", "1"), "rows[1].times.median_s"));
-    EXPECT_TRUE(contains(error_with(bench_json(), "/rows/1/task", "search"), "rows[1].task: is not 'segments'"));
+    EXPECT_TRUE(
+        contains(error_with(bench_json(), "/rows/1/task", "search"), "rows[1].task: is not a task that rows name"));
     EXPECT_TRUE(contains(error_with(bench_json(), "/devices/0/type", "fpga"), "devices[0].type: is 'fpga'"));
     json nowhere = bench_json();
     nowhere["tetrace"]["rows"][1].erase("device");
