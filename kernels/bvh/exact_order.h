@@ -55,10 +55,17 @@ KERNEL_FN bool is_negative(Fixed a)
     return a.high >> 31u != 0u;
 }
 
-KERNEL_FN Vec3 corner_of(SceneView scene, uint quad)
+// Read anew for each use: a GPU lacks registers for three corners.
+KERNEL_FN real coordinate_of(SceneView scene, uint quad, uint axis)
 {
     uint4 words = FETCH(scene, leaf_triangles, quad);
-    return VEC3(as_real(words.x), as_real(words.y), as_real(words.z));
+    return as_real(axis == 0u ? words.x : axis == 1u ? words.y : words.z);
+}
+
+// Of a coordinate of corner `quad`, less that of the first corner `from`.
+KERNEL_FN Fixed edge_of(SceneView scene, uint quad, uint from, uint axis)
+{
+    return difference_of(coordinate_of(scene, quad, axis), coordinate_of(scene, from, axis));
 }
 
 // Numbers of 352 bits in two's complement are slots of an array `wide`, the lowest word first. Coordinates and
@@ -135,25 +142,21 @@ RARE_FN bool is_before_exactly(SceneView scene, Ray ray, uint a, real depth_a, u
     one.low = 1u;
     KEEP_LOOP
     for (uint second = 0u; second < 2u; ++second) {
-        uint at = second == 0u ? a : b;
         uint above = 2u * second;
         uint below = above + 1u;
-        Vec3 v0 = corner_of(scene, LEAF_TRIANGLE_QUADS * at);
-        Vec3 v1 = corner_of(scene, LEAF_TRIANGLE_QUADS * at + 1u);
-        Vec3 v2 = corner_of(scene, LEAF_TRIANGLE_QUADS * at + 2u);
+        uint first = LEAF_TRIANGLE_QUADS * (second == 0u ? a : b);
         SET_WIDE(6u, zero)
         SET_WIDE(below, zero)
         KEEP_LOOP
         for (uint axis = 0u; axis < 3u; ++axis) {
-            Vec3 p = permuted_from(v0, axis);
-            Vec3 q = permuted_from(v1, axis);
-            Vec3 r = permuted_from(v2, axis);
+            uint x = axis == 2u ? 0u : axis + 1u; // cyclic, with `axis` the third
+            uint y = axis == 0u ? 2u : axis - 1u;
             SET_WIDE(4u, zero)
-            SET_WIDE(5u, difference_of(q.y, p.y))
-            ADD_FIXED_PRODUCT(4u, 5u, difference_of(p.x, r.x))
-            SET_WIDE(5u, difference_of(q.x, p.x))
-            ADD_FIXED_PRODUCT(4u, 5u, difference_of(r.y, p.y))
-            ADD_FIXED_PRODUCT(6u, 4u, difference_of(p.z, component(ray.origin, axis)))
+            SET_WIDE(5u, edge_of(scene, first + 1u, first, y))
+            ADD_FIXED_PRODUCT(4u, 5u, edge_of(scene, first, first + 2u, x))
+            SET_WIDE(5u, edge_of(scene, first + 1u, first, x))
+            ADD_FIXED_PRODUCT(4u, 5u, edge_of(scene, first + 2u, first, y))
+            ADD_FIXED_PRODUCT(6u, 4u, difference_of(coordinate_of(scene, first, axis), component(ray.origin, axis)))
             ADD_FIXED_PRODUCT(below, 4u, fixed_of(component(ray.direction, axis), UNIT_OF_DIRECTIONS))
         }
         if (IS_NEGATIVE_WIDE(below)) {
