@@ -91,7 +91,11 @@ std::vector<Inspected> ask_driver(const Target& target, const std::vector<EntryP
         take_code(nothing, target.backend->compiled(target.device, std::nullopt, true));
     } catch (const Error& error) {
         if (error.kind() == ErrorKind::interrupted) throw;
-        return unasked(target, points, printable_line(error.what()));
+        rows = unasked(target, points, printable_line(error.what()));
+        if (error.kind() == ErrorKind::unsupported || error.kind() == ErrorKind::missing) return rows;
+        for (Inspected& row : rows)
+            row.status = InspectedStatus::error;
+        return rows;
     }
     for (Inspected& row : rows) {
         tell(static_cast<double>(&row - rows.data()) / static_cast<double>(rows.size()));

@@ -47,12 +47,16 @@ Inspection inspect(const Options& options, const Progress& tell)
     const auto targets = asked_targets(options);
     if (std::ranges::all_of(targets, [&](const Target& target) { return points_of(options, target).empty(); }))
         throw Error(ErrorKind::usage, "inspect: no kernel has this combination of --structure, --method, --layout, "
-                                      "--schedule, --math and --entry");
+                                      "--schedule, --math, --entry, --backend and --target");
     Inspection inspection;
     std::optional<Nvcc> nvcc; // looked for once, and only if it is needed
     for (const Target& target : targets) {
         const auto points = points_of(options, target);
-        if (points.empty()) continue;
+        if (points.empty()) {
+            if (target.maker == Maker::driver)
+                inspection.skipped.push_back(target.name + ": has none of these kernels");
+            continue;
+        }
         const double first = static_cast<double>(&target - targets.data()), all = static_cast<double>(targets.size());
         const PartDone tell_part = [&](double part) { tell("compiling", (first + part) / all, "for " + target.name); };
         tell_part(0);
@@ -72,9 +76,10 @@ void require_asked(const Inspection& inspection, const std::vector<std::string>&
 {
     for (const std::string& name : required) {
         if (std::ranges::none_of(inspection.rows, [&](const Inspected& row) { return row.target.name == name; }))
-            throw Error(
-                ErrorKind::usage,
-                fmt::format("--require-target {0}: {0} is not a target of this run; name it in --target too", name));
+            throw Error(ErrorKind::usage,
+                        fmt::format("--require-target {0}: {0} is not a target of this run; name it in --target, or by "
+                                    "--backend or --device",
+                                    name));
         for (const Inspected& row : inspection.rows)
             if (row.target.name == name && row.status != InspectedStatus::ok)
                 throw Error(ErrorKind::missing,

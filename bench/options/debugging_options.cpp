@@ -47,8 +47,7 @@ std::vector<OptionRow> inspect_options()
         {"Compilers", "--target", "GPU",
          "Compile for this GPU, which need not be here: AMD's as RADV names them (gfx1100, navi21, gfx906, ...), "
          "NVIDIA's as nvcc does (sm_75, sm_90, ...). Default: gfx1100, navi21, gfx906, sm_75, sm_90; none with "
-         "--backend "
-         "or --device.",
+         "--backend or --device.",
          bit(Verb::inspect), true, append_text(&Options::gpus),
          usual_for(every_verb, "compile for this GPU: gfx1100, sm_90, ...")},
         {experiments, "--entry", "NAME",
@@ -57,8 +56,10 @@ std::vector<OptionRow> inspect_options()
          "given rays with all their tets. Default: all.",
          bit(Verb::inspect), true, append("--entry", &Options::entries)},
         {"Compilers", "--require-target", "GPU",
-         "Fail with exit code 3 unless this target's compiler is here and compiles every program.", bit(Verb::inspect),
-         true, append_text(&Options::required), usual_for(every_verb, "fail unless this GPU's compiler is here")},
+         "Fail with exit code 3 unless this target's compiler is here and compiles every program; "
+         "or the driver, for a device of --backend and --device as 'tetrace devices' labels it (vulkan:1).",
+         bit(Verb::inspect), true, append_text(&Options::required),
+         usual_for(every_verb, "fail unless this GPU's compiler is here")},
         {"Compilers", "--code", "FOLDER",
          "Write the code of every program into this folder: AMD's assembly; NVIDIA's PTX, and machine code if "
          "nvdisasm is installed. Default: none.",

@@ -10,9 +10,10 @@ namespace tetrace {
 namespace {
 
 const char* const how_to_read_programs =
-    "Each entry point of a kernel, compiled for a GPU that need not be here; nothing was run. Occupancy: the "
-    "subgroups resident on a multiprocessor of the GPU, relative to an empty kernel (AMD) or to the maximum "
-    "(NVIDIA). Latency and cycles per subgroup: estimates by AMD's compiler of one pass through all instructions, "
+    "Each entry point of a kernel, compiled for a GPU that need not be here, or by a driver of the machine; nothing "
+    "was run. Occupancy: the subgroups resident on a multiprocessor of the GPU, relative to an empty kernel (AMD) or "
+    "to the maximum (NVIDIA). Latency and cycles per subgroup: estimates by AMD's compiler of one pass through all "
+    "instructions, "
     "and of how often one can begin. Fused: floating-point operations that multiply and add with one rounding, with "
     "the first of them. In exact mode none may decide a sign; those in box tests of BVHs decide nothing.";
 

@@ -89,6 +89,7 @@ Table device_table(const std::vector<ApiDevice>& devices)
                  {"threads", "threads"},
                  {"memory_bytes", "memory", "bytes"},
                  {"max_buffer_bytes", "largest buffer", "bytes"},
+                 {"cache_bytes", "largest cache", "bytes"},
                  {"max_group_items", "group"},
                  {"group_width", "lockstep"},
                  {"timer_period_s", "timer", "s", 9},
@@ -112,6 +113,7 @@ Table device_table(const std::vector<ApiDevice>& devices)
                    std::uint64_t{device.threads},
                    count_cell(device.memory_bytes),
                    count_cell(device.max_buffer_bytes),
+                   count_cell(device.cache_bytes),
                    count_cell(device.max_group_items),
                    count_cell(device.group_width),
                    device.timer_period_s > 0 ? Cell(device.timer_period_s) : Cell(),
@@ -208,8 +210,10 @@ std::string devices_text(const std::vector<ApiDevice>& devices)
 nlohmann::json devices_json(const std::vector<ApiDevice>& devices)
 {
     nlohmann::json rows = to_json(device_table(devices));
-    for (std::size_t i = 0; i < devices.size(); ++i)
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+        rows[i]["reports_code"] = devices[i].device.reports_code;
         if (devices[i].self_test) rows[i]["self_test"] = self_test_json(*devices[i].self_test);
+    }
     return rows;
 }
 

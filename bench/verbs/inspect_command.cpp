@@ -1,3 +1,4 @@
+#include "bench/inspection/drivers.h"
 #include "bench/inspection/inspection.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
@@ -20,13 +21,22 @@ void make_code_folder(const Options& options)
                     "--code: the folder '" + options.code_folder->string() + "' cannot be made: " + failed.message());
 }
 
+/// Names of GPUs as --target has them, and of the devices that --backend and --device keep.
+void check_required(const Options& options)
+{
+    if (options.required.empty()) return;
+    const auto drivers = driver_targets(options);
+    for (const std::string& name : options.required)
+        if (std::ranges::none_of(drivers, [&](const Target& target) { return target.name == name; }))
+            static_cast<void>(parse_target("--require-target", name));
+}
+
 } // namespace
 
 int inspect_command(const Options& options)
 {
     check_output(options);
-    for (const std::string& name : options.required)
-        static_cast<void>(parse_target("--require-target", name));
+    check_required(options);
     make_code_folder(options);
     const Inspection inspection = inspect(options, progress_line().callback());
     progress_line().clear();

@@ -341,6 +341,25 @@ TEST_F(Inspect, a_driver_that_reports_nothing_is_skipped_with_the_reason)
     EXPECT_EQ(run("inspect --backend no-such-backend").code, 2);
 }
 
+TEST_F(Inspect, devices_are_required_by_their_labels)
+{
+    const std::string maria = " --method maria --layout tet80";
+    const Ended required = run("inspect --backend cuda-host --require-target cuda-host" + maria);
+    EXPECT_EQ(required.code, 3);
+    EXPECT_NE(required.errors.find("--require-target cuda-host"), std::string::npos) << required.errors;
+    EXPECT_EQ(run("inspect --backend openmp --require-target openmp:9" + maria).code, 2);
+}
+
+TEST_F(Inspect, a_backend_without_the_kernels_is_named)
+{
+    const std::string maria = " --method maria --layout tet80";
+    const Ended none = run("inspect --backend embree" + maria);
+    EXPECT_EQ(none.code, 2);
+    EXPECT_NE(none.errors.find("--backend"), std::string::npos) << none.errors;
+    const Ended some = run("inspect --backend embree,openmp" + maria);
+    EXPECT_NE(some.out.find("embree: has none of these kernels"), std::string::npos) << some.out;
+}
+
 TEST_F(Inspect, opencl_says_what_it_knows_of_a_kernel)
 {
     const json programs = inspected("--backend opencl --method maria --layout tet80 --schedule tiles --entry outside");
