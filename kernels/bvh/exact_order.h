@@ -68,135 +68,88 @@ KERNEL_FN Fixed edge_of(SceneView scene, uint quad, uint from, uint axis)
     return difference_of(coordinate_of(scene, quad, axis), coordinate_of(scene, from, axis));
 }
 
-// Numbers of 352 bits in two's complement are slots of an array `wide`, the lowest word first. Coordinates and
-// directions are at most 2^6, so no value here takes more than 341 bits. Each operation is a loop that is kept: an
-// array indexed by one stays in memory, so that a GPU that needs this for few rays keeps its registers for all
-// (results/registers.md). They are statements, since a function of this language copies the arrays that it gets.
-#define WIDE_WORDS 11u
-#define SLOT(number) ((number)*WIDE_WORDS)
-
-// Slot `to` becomes a Fixed.
-#define SET_WIDE(to, fixed)                                                                                            \
-    {                                                                                                                  \
-        Fixed value = fixed;                                                                                           \
-        uint sign = is_negative(value) ? ~0u : 0u;                                                                     \
-        KEEP_LOOP                                                                                                      \
-        for (uint word = 0u; word < WIDE_WORDS; ++word)                                                                \
-            wide[SLOT(to) + word] = word == 0u ? value.low : word == 1u ? value.high : sign;                           \
-    }
-
-// Slot `at` changes its sign.
-#define NEGATE_WIDE(at)                                                                                                \
-    {                                                                                                                  \
-        uint carry = 1u;                                                                                               \
-        KEEP_LOOP                                                                                                      \
-        for (uint word = 0u; word < WIDE_WORDS; ++word) {                                                              \
-            uint inverted = ~wide[SLOT(at) + word];                                                                    \
-            wide[SLOT(at) + word] = inverted + carry;                                                                  \
-            carry = inverted + carry < carry ? 1u : 0u;                                                                \
-        }                                                                                                              \
-    }
-
-// Slot `to` grows, or shrinks if `shrinks`, by slot `from` times 2^(32 up) times a word.
-#define ADD_PRODUCT(to, from, up, factor, shrinks)                                                                     \
-    {                                                                                                                  \
-        uint carry = 0u;                                                                                               \
-        KEEP_LOOP                                                                                                      \
-        for (uint word = (up); word < WIDE_WORDS; ++word) {                                                            \
-            uint multiplied = wide[SLOT(from) + word - (up)];                                                          \
-            uint old = wide[SLOT(to) + word];                                                                          \
-            uint part = multiplied * (factor) + carry;                                                                 \
-            carry = high_product(multiplied, factor) + (part < carry ? 1u : 0u);                                       \
-            uint changed = (shrinks) ? old - part : old + part;                                                        \
-            carry += ((shrinks) ? old < part : changed < part) ? 1u : 0u;                                              \
-            wide[SLOT(to) + word] = changed;                                                                           \
-        }                                                                                                              \
-    }
-
-// Slot `to` grows by slot `from` times a Fixed.
-#define ADD_FIXED_PRODUCT(to, from, factor)                                                                            \
-    {                                                                                                                  \
-        Fixed signed_factor = factor;                                                                                  \
-        bool is_minus = is_negative(signed_factor);                                                                    \
-        Fixed size = is_minus ? negated_fixed(signed_factor) : signed_factor;                                          \
-        KEEP_LOOP                                                                                                      \
-        for (uint up = 0u; up < 2u; ++up)                                                                              \
-            ADD_PRODUCT(to, from, up, up == 0u ? size.low : size.high, is_minus)                                       \
-    }
-
-#define IS_NEGATIVE_WIDE(at) (wide[SLOT(at) + WIDE_WORDS - 1u] >> 31u != 0u)
+// Numbers of 352 bits in two's complement: seven slots, 0 to 6, and what may be done with them. Coordinates and
+// directions are at most 2^6, so no value here takes more than 341 bits.
+//   WIDE_SLOTS                         declares the slots
+//   COPY_WIDE(to, from)
+//   SET_WIDE(to, fixed)
+//   NEGATE_WIDE(at)
+//   UP_A_WORD(at)                      times 2^32
+//   ADD_PRODUCT(to, from, word)        adds a slot's product with a word
+//   ADD_FIXED_PRODUCT(to, from, fixed)
+//   LOW_WORD(at, number)               0 to 4
+//   IS_NEGATIVE_WIDE(at), IS_ZERO_WIDE(at)
+#ifdef WIDE_IN_REGISTERS
+#include "kernels/bvh/wide_in_registers.h"
+#else
+#include "kernels/bvh/wide_in_memory.h"
+#endif
 
 // Whether leaf triangle a is before b: nearer, or as near and earlier in the input. depth_a, depth_b: by floats. A
 // triangle's depth is that at which the exact ray meets its plane; or its float depth, if they are NEAR_KEY apart or
 // more, or if the ray is in the plane.
 RARE_FN bool is_before_exactly(SceneView scene, Ray ray, uint a, real depth_a, uint b, real depth_b)
 {
-    // Slots 0 and 1: the depth of a, above / below, in units of 2^-40; below is positive, and below 2^160. 2 and 3:
-    // that of b. 4: of a plane, its normal's component; 5: a difference of coordinates; 6: the plane's normal times a
-    // vertex, seen from the origin. `below` is first the normal times the direction.
-    uint wide[SLOT(7)];
+    // Slots 0 and 1: the depth of b, then of a, above / below, in units of 2^-40; below is positive, and below 2^160.
+    // First, 1 is the plane's normal times the direction. 2 and 3: the depth of b. 4: of a plane, its normal's
+    // component; 5: a difference of coordinates; 6: the plane's normal times a vertex, seen from the origin.
+    WIDE_SLOTS
     Fixed zero;
     zero.low = 0u;
     zero.high = 0u;
     Fixed one = zero;
     one.low = 1u;
+    SET_WIDE(0, zero)
+    SET_WIDE(1, zero)
     KEEP_LOOP
     for (uint second = 0u; second < 2u; ++second) {
-        uint above = 2u * second;
-        uint below = above + 1u;
-        uint first = LEAF_TRIANGLE_QUADS * (second == 0u ? a : b);
-        SET_WIDE(6u, zero)
-        SET_WIDE(below, zero)
+        COPY_WIDE(2, 0)
+        COPY_WIDE(3, 1)
+        uint first = LEAF_TRIANGLE_QUADS * (second == 0u ? b : a);
+        SET_WIDE(6, zero)
+        SET_WIDE(1, zero)
         KEEP_LOOP
         for (uint axis = 0u; axis < 3u; ++axis) {
             uint x = axis == 2u ? 0u : axis + 1u; // cyclic, with `axis` the third
             uint y = axis == 0u ? 2u : axis - 1u;
-            SET_WIDE(4u, zero)
-            SET_WIDE(5u, edge_of(scene, first + 1u, first, y))
-            ADD_FIXED_PRODUCT(4u, 5u, edge_of(scene, first, first + 2u, x))
-            SET_WIDE(5u, edge_of(scene, first + 1u, first, x))
-            ADD_FIXED_PRODUCT(4u, 5u, edge_of(scene, first + 2u, first, y))
-            ADD_FIXED_PRODUCT(6u, 4u, difference_of(coordinate_of(scene, first, axis), component(ray.origin, axis)))
-            ADD_FIXED_PRODUCT(below, 4u, fixed_of(component(ray.direction, axis), UNIT_OF_DIRECTIONS))
+            SET_WIDE(4, zero)
+            SET_WIDE(5, edge_of(scene, first + 1u, first, y))
+            ADD_FIXED_PRODUCT(4, 5, edge_of(scene, first, first + 2u, x))
+            SET_WIDE(5, edge_of(scene, first + 1u, first, x))
+            ADD_FIXED_PRODUCT(4, 5, edge_of(scene, first + 2u, first, y))
+            ADD_FIXED_PRODUCT(6, 4, difference_of(coordinate_of(scene, first, axis), component(ray.origin, axis)))
+            ADD_FIXED_PRODUCT(1, 4, fixed_of(component(ray.direction, axis), UNIT_OF_DIRECTIONS))
         }
-        if (IS_NEGATIVE_WIDE(below)) {
-            NEGATE_WIDE(6u)
-            NEGATE_WIDE(below)
+        if (IS_NEGATIVE_WIDE(1)) {
+            NEGATE_WIDE(6)
+            NEGATE_WIDE(1)
         }
         real deepest = magnitude(component(ray.direction, deepest_axis(ray.direction)));
-        Fixed rounded = fixed_of(second == 0u ? depth_a : depth_b, UNIT_OF_COORDINATES);
-        SET_WIDE(above, zero)
-        ADD_FIXED_PRODUCT(above, 6u, fixed_of(deepest, UNIT_OF_DIRECTIONS))
+        Fixed rounded = fixed_of(second == 0u ? depth_b : depth_a, UNIT_OF_COORDINATES);
+        SET_WIDE(0, zero)
+        ADD_FIXED_PRODUCT(0, 6, fixed_of(deepest, UNIT_OF_DIRECTIONS))
         // Slot 4: less than nothing by as much as the float depth is off, and NEAR_KEY more.
-        SET_WIDE(4u, zero)
-        ADD_PRODUCT(4u, above, 0u, 1u, false)
-        ADD_FIXED_PRODUCT(4u, below, negated_fixed(rounded))
-        if (!IS_NEGATIVE_WIDE(4u)) NEGATE_WIDE(4u)
-        ADD_PRODUCT(4u, below, 0u, NEAR_KEY, false)
-        NEGATE_WIDE(4u)
-        if (!IS_NEGATIVE_WIDE(4u)) {
-            SET_WIDE(above, rounded)
-            SET_WIDE(below, one)
+        COPY_WIDE(4, 0)
+        ADD_FIXED_PRODUCT(4, 1, negated_fixed(rounded))
+        if (!IS_NEGATIVE_WIDE(4)) {
+            NEGATE_WIDE(4)
+        }
+        ADD_PRODUCT(4, 1, NEAR_KEY)
+        NEGATE_WIDE(4)
+        if (!IS_NEGATIVE_WIDE(4)) {
+            SET_WIDE(0, rounded)
+            SET_WIDE(1, one)
         }
     }
-    SET_WIDE(4u, zero) // becomes the depth of a less that of b, times both denominators
+    NEGATE_WIDE(2)
+    SET_WIDE(4, zero) // becomes the depth of a less that of b, times both denominators
     KEEP_LOOP
-    for (uint up = 0u; up < 5u; ++up) {
-        ADD_PRODUCT(4u, 0u, up, wide[SLOT(3u) + up], false)
-        ADD_PRODUCT(4u, 2u, up, wide[SLOT(1u) + up], true)
+    for (uint digit = 5u; digit > 0u; --digit) {
+        UP_A_WORD(4)
+        ADD_PRODUCT(4, 0, LOW_WORD(3, digit - 1u))
+        ADD_PRODUCT(4, 2, LOW_WORD(1, digit - 1u))
     }
-    uint any = 0u;
-    KEEP_LOOP
-    for (uint word = 0u; word < WIDE_WORDS; ++word)
-        any |= wide[SLOT(4u) + word];
     uint number_a = FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * a).w;
     uint number_b = FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * b).w;
-    return any == 0u ? number_a < number_b : IS_NEGATIVE_WIDE(4u);
+    return IS_ZERO_WIDE(4) ? number_a < number_b : IS_NEGATIVE_WIDE(4);
 }
-#undef IS_NEGATIVE_WIDE
-#undef ADD_FIXED_PRODUCT
-#undef ADD_PRODUCT
-#undef NEGATE_WIDE
-#undef SET_WIDE
-#undef SLOT
-#undef WIDE_WORDS

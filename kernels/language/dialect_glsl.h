@@ -10,7 +10,8 @@
 #define KERNEL_FN
 #define RARE_FN
 #define MAYBE_UNUSED
-#define KEEP_LOOP [[dont_unroll]] // for which the entry file asks for an extension
+#define KEEP_LOOP
+#define WIDE_IN_REGISTERS // kernels/bvh/wide_in_registers.h
 #define STRUCT(name) struct name
 #define VEC3(x, y, z) Vec3(x, y, z)
 // An item's words are GROUP_ITEMS apart, so that its neighbours' are in other banks. An array has one word at least.
