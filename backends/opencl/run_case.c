@@ -3,11 +3,12 @@
  * TEXT: a part of the name of the platform or of the device. Without it, the first device.
  * Exit code: 0, the output is the expected one; 1, it differs; 2, the case cannot run here. */
 #define CL_TARGET_OPENCL_VERSION 120
-#include "case.h"
 #include <CL/cl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "case.h"
 
 static const struct {
     enum { value, buffer } kind;
@@ -40,10 +41,10 @@ static cl_device_id find_device(const char* text)
     cl_platform_id platforms[64];
     cl_uint platform_count = 0, device_count = 0;
     check(clGetPlatformIDs(64, platforms, &platform_count), "clGetPlatformIDs");
-    for (cl_uint p = 0; p < platform_count; ++p) {
+    for (cl_uint p = 0; p < platform_count && p < 64; ++p) {
         cl_device_id devices[64];
         if (clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, 64, devices, &device_count) != CL_SUCCESS) continue;
-        for (cl_uint d = 0; d < device_count; ++d) {
+        for (cl_uint d = 0; d < device_count && d < 64; ++d) {
             char platform[1024] = "", device[1024] = "", driver[1024] = "";
             clGetPlatformInfo(platforms[p], CL_PLATFORM_NAME, sizeof(platform) - 1, platform, NULL);
             clGetDeviceInfo(devices[d], CL_DEVICE_NAME, sizeof(device) - 1, device, NULL);

@@ -2,12 +2,13 @@
  * Build and run:  cc -O1 -o run_case run_case.c -l:libvulkan.so.1 && ./run_case [TEXT]
  * TEXT: a part of the device's name. Without it, the first device.
  * Exit code: 0, the output is the expected one; 1, it differs; 2, the case cannot run here. */
-#include "case.h"
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <vulkan/vulkan.h>
+
+#include "case.h"
 
 enum kind { buffer, words, quads }; /* words, quads: a buffer that is read as texels */
 static const struct {

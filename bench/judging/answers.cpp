@@ -173,10 +173,14 @@ std::vector<MeshRay> mesh_rays_of(const NpyArray& array, const std::filesystem::
         const auto row = array.row(i);
         for (std::size_t c = 0; c < 8; ++c) {
             const double size = std::abs(row[c]);
-            const bool is_end = c == 7 && row[c] == std::numeric_limits<double>::infinity();
-            if (row[c] != 0 && !is_end && !(size >= min_magnitude && size <= max_magnitude))
+            if (c == 3 || c == 7) { // only compared
+                if (std::isnan(row[c]) || (std::isinf(row[c]) && (c == 3 || row[c] < 0)))
+                    refuse_row(path, i, fmt::format("{} is {:g}", ray_columns[c], row[c]),
+                               "t_min is finite, and t_max may be infinite");
+            } else if (row[c] != 0 && !(size >= min_magnitude && size <= max_magnitude)) {
                 refuse_row(path, i, fmt::format("{} is {:g}", ray_columns[c], row[c]),
-                           "numbers are 0 or of a size from 2^-160 to 2^126, and t_max may be infinite");
+                           "numbers are 0 or of a size from 2^-160 to 2^126");
+            }
         }
         rays[i] = {{row[0], row[1], row[2]}, {row[4], row[5], row[6]}, row[3], row[7]};
         if (rays[i].direction == Double3{}) refuse_row(path, i, "the direction is 0", "give it a length");

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <iterator>
+#include <map>
 #include <set>
 
 namespace tetrace {
@@ -18,8 +19,8 @@ namespace tetrace {
 namespace {
 
 constexpr unsigned rounds_of_lone_rays = 10; // min_views: fewer give no interval
-constexpr double growth = 2;             // of a scene's time: its rays cross 1.6 times as many tets as the last one's
-constexpr double share_of_samples = 0.7; // of a scene's budget; rays alone have the rest
+constexpr double growth = 4;                 // of a scene's time, most of which is making and packing its tets
+constexpr double share_of_samples = 0.7;     // of a scene's budget; rays alone have the rest
 
 /// Cubes along an axis for which half32 takes 1, 4, 16, 64, 256, 1024 and 4096 MB.
 constexpr int ladder_lattices[] = {11, 17, 27, 44, 69, 110, 174};

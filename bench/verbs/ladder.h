@@ -18,7 +18,7 @@ struct Ladder {
 [[nodiscard]] Options ladder_options(Options options);
 
 /// Measures scene after scene, in the order of the options: each is closed before the next is made. A scene that the
-/// machine's memory cannot hold, or for which the budget has no time, is left out, and so are those after it; the
+/// machine's memory cannot hold, or for which the budget has no time, is left out; the
 /// result says why. rows: of those options.
 [[nodiscard]] Ladder run_ladder(const Options& options, const std::vector<RowKey>& rows);
 

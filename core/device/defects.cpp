@@ -56,6 +56,9 @@ std::span<const Defect> all_defects()
     return defects;
 }
 
+/// Of a launch: what Vulkan guarantees.
+constexpr std::uint32_t max_groups = 65'535;
+
 std::optional<ChosenDefect> chosen_defect(std::string_view text)
 {
     const auto colon = text.find(':');
@@ -70,7 +73,7 @@ std::optional<ChosenDefect> chosen_defect(std::string_view text)
     const auto group = std::from_chars(items.ptr + 1, end, launch.group_items);
     const DefectLaunch& largest = defect->launches().back();
     const bool is_within = launch.items >= 1 && launch.items <= largest.items && launch.group_items >= 1 &&
-                           launch.group_items <= largest.group_items;
+                           launch.group_items <= largest.group_items && launch.groups() <= max_groups;
     if (group.ec != std::errc() || group.ptr != end || !is_within) return std::nullopt;
     return ChosenDefect{&*defect, launch};
 }
@@ -84,7 +87,7 @@ std::vector<std::uint32_t> defect_words()
 
 std::span<const DefectLaunch> Defect::launches() const
 {
-    // Every device has groups of 128 items. The last group of a million has less.
+    // Every device has groups of 128 items. The last group of a million has fewer.
     static constexpr DefectLaunch reduced[] = {{16, 16}};
     static constexpr DefectLaunch stressing[] = {{1, 1}, {64, 64}, {4096, 32}, {4096, 128}, {1'000'000, 128}};
     if (is_stressor) return stressing;

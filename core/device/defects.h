@@ -9,7 +9,7 @@
 
 namespace tetrace {
 
-/// How many items a kernel has, and how many of them are a work group; the last group may have more.
+/// How many items a kernel has, and how many of them are a work group; the last group may have fewer.
 struct DefectLaunch {
     std::uint32_t items = 16, group_items = 16;
 
