@@ -178,7 +178,8 @@ void expect_known_figures(const std::string& target, const json& programs, bool 
     }
     const auto named = [&](const json& all) {
         json some = json::object();
-        for (const auto& [name, program] : of_target(all, target).items())
+        const json of_it = of_target(all, target);
+        for (const auto& [name, program] : of_it.items())
             if (are_all || figures.contains(name)) some[name] = program;
         return some;
     };
