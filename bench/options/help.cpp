@@ -159,8 +159,8 @@ const VerbHelp verb_help[] = {
      "  tetrace reproduce --backend openmp --layout tet80 --out all.json --resume\n"},
     {Verb::inspect, "show what real GPU compilers make of the kernels",
      "Compiles every entry point of the selected kernels for GPUs that need not be here, and prints what the "
-     "compilers report: registers, spills, scratch memory, subgroups per multiprocessor, instructions, branches, "
-     "loads, and AMD's own estimate of cycles. Nothing is run. AMD's targets are compiled by Mesa's RADV on null "
+     "compilers report: registers, spills, scratch memory, occupancy, instructions, branches, loads, and AMD's "
+     "own estimate of cycles. Nothing is run. AMD's targets are compiled by Mesa's RADV on null "
      "hardware (package mesa-vulkan-drivers), NVIDIA's by nvcc and ptxas. A target without its compiler is 'skipped', "
      "with the package to install. With --backend or --device the drivers of this machine are asked what they make of "
      "the kernels: Vulkan's by VK_KHR_pipeline_executable_properties, CUDA's and OpenCL's by what they report of a "
