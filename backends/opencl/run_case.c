@@ -23,15 +23,22 @@ static void check(cl_int code, const char* what)
     exit(2);
 }
 
+static void require(int holds, const char* problem, const char* of)
+{
+    if (holds) return;
+    fprintf(stderr, "run_case: %s %s\n", problem, of);
+    exit(2);
+}
+
 /* 16 bytes of 0 follow the file's. */
 static void* read_file(const char* name, size_t* bytes)
 {
     FILE* file = fopen(name, "rb");
-    check(file == NULL || fseek(file, 0, SEEK_END) != 0, name);
+    require(file != NULL && fseek(file, 0, SEEK_END) == 0, "cannot read", name);
     *bytes = (size_t)ftell(file);
     rewind(file);
     char* contents = calloc(*bytes + 16, 1);
-    check(contents == NULL || fread(contents, 1, *bytes, file) != *bytes, name);
+    require(contents != NULL && fread(contents, 1, *bytes, file) == *bytes, "cannot read", name);
     fclose(file);
     return contents;
 }
@@ -54,7 +61,7 @@ static cl_device_id find_device(const char* text)
             return devices[d];
         }
     }
-    check(CL_DEVICE_NOT_FOUND, "no device has this text in its name");
+    require(0, "no device or platform has in its name:", text);
     return NULL;
 }
 
@@ -63,7 +70,7 @@ static int compare(const cl_uint* found)
     size_t bytes = 0, more = 0, wrong = 0;
     const cl_uint* wanted = read_file("expected.bin", &bytes);
     const cl_uint* tolerances = read_file("tolerance.bin", &more);
-    check(bytes != 4 * OUTPUT_WORDS || more != bytes, "size of expected.bin or tolerance.bin");
+    require(bytes == 4 * OUTPUT_WORDS && more == bytes, "wrong size of", "expected.bin or tolerance.bin");
     for (size_t i = 0; i < OUTPUT_WORDS; ++i) {
         const cl_uint a = found[i], b = wanted[i];
         if ((a > b ? a - b : b - a) <= tolerances[i]) continue;

@@ -25,21 +25,29 @@ static VkPhysicalDevice physical;
 static VkDevice device;
 static VkDescriptorSet set;
 
-static void check(long code, const char* what)
+/* Positive codes are no errors. */
+static void check(VkResult code, const char* what)
 {
-    if (code == VK_SUCCESS) return;
-    fprintf(stderr, "run_case: %s: %ld\n", what, code);
+    if (code >= 0) return;
+    fprintf(stderr, "run_case: %s: %d\n", what, code);
+    exit(2);
+}
+
+static void require(int holds, const char* problem, const char* of)
+{
+    if (holds) return;
+    fprintf(stderr, "run_case: %s %s\n", problem, of);
     exit(2);
 }
 
 static void* read_file(const char* name, size_t* bytes)
 {
     FILE* file = fopen(name, "rb");
-    check(file == NULL || fseek(file, 0, SEEK_END) != 0, name);
+    require(file != NULL && fseek(file, 0, SEEK_END) == 0, "cannot read", name);
     *bytes = (size_t)ftell(file);
     rewind(file);
     char* contents = calloc(*bytes + 1, 1);
-    check(contents == NULL || fread(contents, 1, *bytes, file) != *bytes, name);
+    require(contents != NULL && fread(contents, 1, *bytes, file) == *bytes, "cannot read", name);
     fclose(file);
     return contents;
 }
@@ -53,7 +61,7 @@ static void find_device(const char* text)
     check(vkCreateInstance(&info, NULL, &instance), "vkCreateInstance");
     VkPhysicalDevice devices[64];
     uint32_t count = 64;
-    check(vkEnumeratePhysicalDevices(instance, &count, devices) < 0, "vkEnumeratePhysicalDevices");
+    check(vkEnumeratePhysicalDevices(instance, &count, devices), "vkEnumeratePhysicalDevices");
     for (uint32_t i = 0; i < count && physical == NULL; ++i) {
         VkPhysicalDeviceProperties properties;
         vkGetPhysicalDeviceProperties(devices[i], &properties);
@@ -61,7 +69,7 @@ static void find_device(const char* text)
         printf("%s, driver 0x%x\n", properties.deviceName, properties.driverVersion);
         physical = devices[i];
     }
-    check(physical == NULL, "no device of Vulkan 1.1 has this text in its name");
+    require(physical != NULL, "no device of Vulkan 1.1 has in its name:", text);
 }
 
 /* A buffer that the host writes and reads in place. */
@@ -79,7 +87,7 @@ static VkBuffer make_buffer(size_t bytes, void** mapped)
     VkMemoryAllocateInfo allocation = {VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, NULL, needs.size, 0};
     while (!(needs.memoryTypeBits >> allocation.memoryTypeIndex & 1) ||
            (memories.memoryTypes[allocation.memoryTypeIndex].propertyFlags & wanted) != wanted)
-        check(++allocation.memoryTypeIndex == memories.memoryTypeCount, "no memory fits a buffer");
+        require(++allocation.memoryTypeIndex != memories.memoryTypeCount, "no memory fits", "a buffer");
     VkDeviceMemory memory;
     check(vkAllocateMemory(device, &allocation, NULL, &memory), "vkAllocateMemory");
     check(vkBindBufferMemory(device, made, memory, 0), "vkBindBufferMemory");
@@ -188,7 +196,7 @@ static int compare(const uint32_t* found)
     size_t bytes, more, wrong = 0;
     const uint32_t* wanted = read_file("expected.bin", &bytes);
     const uint32_t* tolerances = read_file("tolerance.bin", &more);
-    check(bytes != 4 * OUTPUT_WORDS || more != bytes, "size of expected.bin or tolerance.bin");
+    require(bytes == 4 * OUTPUT_WORDS && more == bytes, "wrong size of", "expected.bin or tolerance.bin");
     for (size_t i = 0; i < OUTPUT_WORDS; ++i) {
         const uint32_t a = found[i], b = wanted[i];
         if ((a > b ? a - b : b - a) <= tolerances[i]) continue;
@@ -205,7 +213,7 @@ int main(int argc, char** argv)
     uint32_t count = 64, family = 0;
     vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families);
     while (!(families[family].queueFlags & VK_QUEUE_COMPUTE_BIT))
-        check(++family == count, "no queue computes");
+        require(++family != count, "no queue computes on", "the device");
     const float priority = 1;
     VkDeviceQueueCreateInfo queue = {VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, NULL, 0, family, 1, &priority};
     VkDeviceCreateInfo info = {VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, NULL, 0, 1, &queue};

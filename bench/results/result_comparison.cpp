@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 namespace tetrace {
 
@@ -203,30 +204,52 @@ std::string name_without_scene(const ResultRow& row)
     return name;
 }
 
-/// The other file's row of the same name, in either file with or without the size of images that it has, or with
-/// another name of the same scene, as of a .tet file.
-const ResultRow* partner_of(const ResultFile& file, const ResultRow& row, const ResultFile& other)
+/// Whether the names differ only by the size of images, which one of them has, or by the name of the same scene, as of
+/// a .tet file.
+bool are_of_one_row(const ResultFile& file_a, const ResultRow& a, const ResultFile& file_b, const ResultRow& b)
 {
-    if (const ResultRow* same = other.find_row(row.name); same != nullptr || row.scene.empty()) return same;
-    const ResultScene* const scene = file.find_scene(row.scene); // null of one that could not be loaded
-    const auto found = std::ranges::find_if(other.rows, [&](const ResultRow& one) {
-        const ResultScene* const its = scene != nullptr ? other.find_scene(one.scene) : nullptr;
-        if (its == nullptr || its->width != scene->width || its->height != scene->height) return false;
-        return name_without_size(one) == name_without_size(row) ||
-               (its->hash == scene->hash && name_without_scene(one) == name_without_scene(row));
-    });
-    return found == other.rows.end() ? nullptr : &*found;
+    const ResultScene *const in_a = file_a.find_scene(a.scene), *const in_b = file_b.find_scene(b.scene);
+    if (in_a == nullptr || in_b == nullptr) return false; // one that could not be loaded, or a search
+    if (in_a->width != in_b->width || in_a->height != in_b->height) return false;
+    return name_without_size(a) == name_without_size(b) ||
+           (in_a->hash == in_b->hash && name_without_scene(a) == name_without_scene(b));
+}
+
+/// The second file's row for rows of the first: of the same name, or else one that has no partner yet.
+std::map<const ResultRow*, const ResultRow*> partners_in(const ResultFile& before, const ResultFile& after)
+{
+    std::map<const ResultRow*, const ResultRow*> partners;
+    std::set<const ResultRow*> paired;
+    const auto pair = [&](const ResultRow* row, const ResultRow* partner) {
+        if (partner != nullptr && paired.insert(partner).second) partners[row] = partner;
+    };
+    for (const ResultRow* row : before.timed_rows())
+        pair(row, after.find_row(row->name));
+    for (const ResultRow& row : before.rows) {
+        if (partners.contains(&row)) continue;
+        const auto found = std::ranges::find_if(after.rows, [&](const ResultRow& one) {
+            return !paired.contains(&one) && are_of_one_row(before, row, after, one);
+        });
+        if (found != after.rows.end()) pair(&row, &*found);
+    }
+    return partners;
 }
 
 std::vector<ComparedRow> paired_rows(const ResultFile& before, const ResultFile& after, const std::string& filter)
 {
     const NameFilter names("--filter", filter);
     const auto kept = [&](const ResultRow& row) { return names.keeps(row.name); };
+    const auto partners = partners_in(before, after);
+    std::set<const ResultRow*> paired;
     std::vector<ComparedRow> rows;
-    for (const ResultRow* row : before.timed_rows())
-        if (kept(*row)) rows.push_back({row, partner_of(before, *row, after), {}, {}, {}});
+    for (const auto& [row, partner] : partners)
+        paired.insert(partner);
+    for (const ResultRow* row : before.timed_rows()) {
+        const auto partner = partners.find(row);
+        if (kept(*row)) rows.push_back({row, partner == partners.end() ? nullptr : partner->second, {}, {}, {}});
+    }
     for (const ResultRow* row : after.timed_rows())
-        if (kept(*row) && partner_of(after, *row, before) == nullptr) rows.push_back({nullptr, row, {}, {}, {}});
+        if (kept(*row) && !paired.contains(row)) rows.push_back({nullptr, row, {}, {}, {}});
     for (ComparedRow& row : rows)
         row.outcome = outcome_of(row);
     return rows;

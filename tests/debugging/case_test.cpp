@@ -111,6 +111,9 @@ TEST_P(Case, names_the_first_word_that_is_not_the_expected_one)
     EXPECT_EQ(run_case("no such device"), 2) << file("found.txt");
     write_file(folder_ / "case/expected.bin", expected.substr(4));
     EXPECT_EQ(run_case(), 2) << "a file that is too short";
+    std::filesystem::remove(folder_ / "case/tolerance.bin");
+    EXPECT_EQ(run_case(), 2);
+    EXPECT_TRUE(contains(file("found.txt"), "cannot read tolerance.bin")) << file("found.txt");
 }
 
 INSTANTIATE_TEST_SUITE_P(Apis, Case,

@@ -352,6 +352,21 @@ TEST_F(ResultComparisons, of_a_scene_with_two_names_pair_its_rows)
     EXPECT_TRUE(contains(error_of([&] { (void)compare(before, after); }), "they share no row"));
 }
 
+TEST_F(ResultComparisons, pair_no_row_twice_and_first_those_of_the_same_name)
+{
+    Json two = result_of({timed_row("cdt/maria/packed/primary", 1), timed_row("cdt/maria/cubes/primary", 1)});
+    Json& section = two["tetrace"];
+    section["scenes"].push_back(section["scenes"][0]);
+    section["scenes"][1]["name"] = section["rows"][0]["scene"] = "packed";
+    const Json one = result_of({timed_row("cdt/maria/cubes/primary", 1)});
+    const ResultComparison fewer = compare(two, one), more = compare(one, two);
+    EXPECT_EQ(fewer.count(RowOutcome::compared), 1u);
+    EXPECT_EQ(fewer.rows.at(0).verdict(), "MISSING") << "the row of the other name";
+    EXPECT_EQ(fewer.rows.at(1).verdict(), "SAME");
+    EXPECT_EQ(more.count(RowOutcome::compared), 1u);
+    EXPECT_EQ(more.count(RowOutcome::added), 1u);
+}
+
 TEST_F(ResultComparisons, of_nothing_is_refused)
 {
     const auto refused = [&](const Json& before, const Json& after, const std::string& filter = {}) {
