@@ -66,7 +66,8 @@ LaunchCase tile_case(const Device& device, const KernelId& kernel, const PackedS
 
 LaunchCase defect_case(std::string_view name, const DefectLaunch& launch)
 {
-    const FoundDevice any;
+    FoundDevice any;
+    any.facts.kind = DeviceKind::gpu; // without the options for processors
     LaunchCase made = case_of(any, defect_program(name), "run_defect", launch.group_items, launch.groups());
     const auto words = defect_words();
     made.inputs = {input("buffer", 0, "words", "what the kernel reads", std::span(words)),

@@ -33,9 +33,14 @@ std::string defect_names()
     return join_alternatives(names);
 }
 
+/// What chosen_defect() accepts after a name.
+constexpr const char* launch_of_defect =
+    "NAME:ITEMS:GROUP, ITEMS 1 to 1000000 and GROUP 1 to 128 of a stressor (16 and 16 of a reduced kernel), at most "
+    "65535 groups";
+
 void set_defect(Options& options, const std::string& text)
 {
-    if (!chosen_defect(text)) reject_value("--defect", text, defect_names() + ", or NAME:ITEMS:GROUP");
+    if (!chosen_defect(text)) reject_value("--defect", text, defect_names() + ", or " + launch_of_defect);
     options.defect = text;
 }
 
@@ -73,9 +78,9 @@ std::vector<OptionRow> trace_options()
     const unsigned with_ray = bit(Verb::trace) | bit(Verb::dump);
     return {
         {"Ray", "--defect", "NAME",
-         "Write a case of this reduced kernel of a compiler defect: " + defect_names() +
-             "; or NAME:ITEMS:GROUP, with another number of items, and of those of a group. Default: files of the "
-             "kernel of --method and --layout, or with --scene a case of it.",
+         "Write a case of this reduced kernel of a compiler defect, or of this stressor: " + defect_names() +
+             "; or another launch of it, " + launch_of_defect +
+             ". Default: files of the kernel of --method and --layout, or with --scene a case of it.",
          bit(Verb::dump), false, set_defect},
         {"Ray", "--view", "N", "The view of the camera set, numbered from 0. Default: 0.", with_ray, false,
          [](Options& o, const std::string& v) { o.views = fmt::format("{}", parse_count("--view", v, 0, 1u << 30)); },

@@ -200,9 +200,9 @@ const VerbHelp verb_help[] = {
      "file is and how to compile it without tetrace. A driver is loaded only for its machine code, in this process, "
      "after everything else is written. Exits with 2 for a backend without such files: kernels of openmp, cuda-host "
      "and embree are parts of programs and libraries.\n\n"
-     "With --scene and --pixel, or with --defect, it writes a case instead: one work-group of a launch as plain files, "
-     "the expected output (openmp's), and a host in C that runs it on opencl or vulkan without tetrace: exit code 0 as "
-     "expected, 1 different, 2 cannot run.",
+     "With --scene and --pixel, or with --defect, it writes a case instead: a launch (one work-group of a "
+     "scene's) as plain files, the expected output (openmp's), and a host in C that runs it on opencl or vulkan "
+     "without tetrace: exit code 0 as expected, 1 different, 2 cannot run.",
      "  tetrace dump --backend vulkan --method project --layout half32 --out report\n"
      "  tetrace dump --backend opencl --method maria --layout tet80 --math fast --out report\n"
      "  tetrace dump --backend vulkan --method project --scene cubes --pixel 128,100 --out case\n"

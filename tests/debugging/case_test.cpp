@@ -122,13 +122,23 @@ INSTANTIATE_TEST_SUITE_P(Apis, Case,
 
 using DumpedCases = ProgramTest;
 
+TEST_F(DumpedCases, of_a_stressor_are_as_a_gpu_gets_it)
+{
+    const Ended ended = run("dump --backend opencl --defect denormals_in_minima --out case");
+    if (ended.code == 2) GTEST_SKIP() << ended.errors; // a build without OpenCL
+    EXPECT_EQ(ended.code, 0) << ended.errors;
+    EXPECT_TRUE(contains(file("case/case.h"), "#define OPTIONS \""));
+    EXPECT_FALSE(contains(file("case/case.h"), "-cl-denorms-are-zero")) << file("case/case.h");
+}
+
 TEST_F(DumpedCases, refuse_what_is_no_case)
 {
     const std::string scene = "--scene cubes --resolution 6 --size 24 ";
     for (const std::string& arguments : std::vector<std::string>{
              "--backend cuda --defect loop_of_70000_iterations", "--backend openmp --pixel 1,1 " + scene,
              "--backend opencl --defect no_such_defect", "--backend opencl --defect zoo_of_exits:0:1",
-             "--backend opencl --defect zoo_of_exits:64", "--backend opencl --defect loop_of_70000_iterations:64:64",
+             "--backend opencl --defect zoo_of_exits:64", "--backend opencl --defect zoo_of_exits:1000000:1",
+             "--backend opencl --defect loop_of_70000_iterations:64:64",
              "--backend opencl --defect steps_of_nested_loops " + scene,
              "--backend opencl --defect steps_of_nested_loops --method maria", "--backend opencl --view 0",
              "--backend opencl --resolution 6", "--backend opencl " + scene, "--backend opencl --pixel 24,0 " + scene,
