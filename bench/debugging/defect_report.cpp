@@ -20,8 +20,13 @@ namespace {
 void judge(DefectRun& run, const std::vector<std::uint32_t>& words)
 {
     run.wrong = wrong_items(*run.defect, run.launch.items, words);
-    if (run.wrong.empty()) return;
+    if (run.wrong.empty()) {
+        if (run.defect->is_flushed != nullptr && words != expected_words(*run.defect, run.launch.items))
+            run.reason = "flushed: denormals count as zeros, which is allowed";
+        return;
+    }
     run.sight = DefectSight::seen;
+    run.reason.clear();
     if (run.wrong.front() < words.size()) run.first_word = words[run.wrong.front()];
 }
 
@@ -160,7 +165,7 @@ struct ShownRun {
     std::uint64_t index = 0, items = 0, wrong = 0;
     std::uint64_t group_items = 0; ///< of a stressor
     std::string device, type, driver, implementation, outcome;
-    std::string detail;    ///< the first wrong word, or the reason; empty if all is well
+    std::string detail;    ///< the first wrong word, or the reason; empty if all is as it should be
     bool is_known = false; ///< whether seeing it was expected
 
     [[nodiscard]] std::string label() const { return label_of(backend, index); }
@@ -318,7 +323,7 @@ std::string summary(const std::vector<ShownRun>& runs)
         stresses ? "have wrong results" : "show their defect", count(DefectSight::skipped), count(DefectSight::error));
 }
 
-/// The first wrong word, or the reason; empty if all is well.
+/// The first wrong word, or the reason; empty if all is as it should be.
 std::string detail_of(const DefectRun& run)
 {
     if (run.sight != DefectSight::seen) return run.reason;

@@ -28,7 +28,7 @@ struct DefectRun {
     DefectSight sight = DefectSight::not_seen;
     std::vector<std::uint32_t> wrong;     ///< items with another word than the expected one
     std::uint32_t first_word = 0;         ///< what the first of them returned
-    std::string reason;                   ///< of skipped and error
+    std::string reason;                   ///< of skipped and error; of not_seen, that denormals were flushed
     ErrorKind kind = ErrorKind::internal; ///< of error
     double seconds = 0;                   ///< compiling included
     Judged judged;                        ///< simply conforms if it was skipped

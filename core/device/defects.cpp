@@ -109,9 +109,13 @@ std::vector<std::uint32_t> expected_words(const Defect& defect, std::uint32_t it
 
 std::vector<std::uint32_t> wrong_items(const Defect& defect, std::uint32_t items, std::span<const std::uint32_t> found)
 {
+    const auto is_right = [&](std::uint32_t item) {
+        return found[item] == defect.expected(item) ||
+               (defect.is_flushed != nullptr && defect.is_flushed(item, found[item]));
+    };
     std::vector<std::uint32_t> wrong;
     for (std::uint32_t item = 0; item < items; ++item)
-        if (found.size() != items || found[item] != defect.expected(item)) wrong.push_back(item);
+        if (found.size() != items || !is_right(item)) wrong.push_back(item);
     return wrong;
 }
 

@@ -24,6 +24,8 @@ struct Defect {
     std::string_view known; ///< where the defect was met; of a stressor, public reports of its kind
     std::uint32_t (*expected)(std::uint32_t item);
     bool is_stressor = false;
+    /// Whether the item may return this word on a device that flushes denormals. Null: of no arithmetic on denormals.
+    bool (*is_flushed)(std::uint32_t item, std::uint32_t word) = nullptr;
 
     /// Those to be run: one group of 16 for a reduced kernel; for a stressor 1 to 10^6 items, in groups of several
     /// sizes.
@@ -50,7 +52,7 @@ struct ChosenDefect {
 /// The words of items 0 to items - 1.
 [[nodiscard]] std::vector<std::uint32_t> expected_words(const Defect& defect, std::uint32_t items);
 
-/// The items whose word is not the expected one; all of them if there is not a word for each.
+/// The items whose word is neither the expected one nor a flushed one; all of them if there is not a word for each.
 [[nodiscard]] std::vector<std::uint32_t> wrong_items(const Defect& defect, std::uint32_t items,
                                                      std::span<const std::uint32_t> words);
 

@@ -162,10 +162,29 @@ std::uint32_t denormals_in_maxima(std::uint32_t item)
     return denormal_word(item) + 1;
 }
 
+/// Bits of denormal_word() times 2^24, a normal number.
+std::uint32_t normal_word(std::uint32_t item)
+{
+    return std::bit_cast<std::uint32_t>(std::ldexp(static_cast<float>(denormal_word(item)), 24 - 149));
+}
+
 std::uint32_t denormals_multiplied(std::uint32_t item)
 {
-    const float normal = std::ldexp(static_cast<float>(denormal_word(item)), 24 - 149);
-    return 2 * (denormal_word(item) + 1) * 31 + std::bit_cast<std::uint32_t>(normal);
+    return 2 * (denormal_word(item) + 1) * 31 + normal_word(item);
+}
+
+// As OpenCL and Vulkan allow of arithmetic, for each operation and item: copies and selects keep all bits.
+
+/// A comparison that flushes its operands finds two zeros, and may return either denormal.
+bool is_flushed_extremum(std::uint32_t item, std::uint32_t word)
+{
+    return word == 0 || word == denormal_word(item) || word == denormal_word(item) + 1;
+}
+
+/// Either product may be zero.
+bool is_flushed_product(std::uint32_t item, std::uint32_t word)
+{
+    return word == 0 || word == normal_word(item) || word == denormals_multiplied(item) - normal_word(item);
 }
 
 } // namespace
@@ -187,9 +206,12 @@ std::span<const Defect> all_stressors()
          "slang#11933, SPIRV-Cross#1748, MoltenVK#1209", lost_in_products, true},
         {"denormals_copied", "denormals through an array", "clspv#1646", denormals_copied, true},
         {"denormals_selected", "denormals through a select", "clspv#1646", denormals_selected, true},
-        {"denormals_in_minima", "the lesser of two denormals", "clspv#1646", denormals_in_minima, true},
-        {"denormals_in_maxima", "the greater of two denormals", "clspv#1646", denormals_in_maxima, true},
-        {"denormals_multiplied", "denormals times powers of two", "clspv#1646", denormals_multiplied, true},
+        {"denormals_in_minima", "the lesser of two denormals", "clspv#1646", denormals_in_minima, true,
+         is_flushed_extremum},
+        {"denormals_in_maxima", "the greater of two denormals", "clspv#1646", denormals_in_maxima, true,
+         is_flushed_extremum},
+        {"denormals_multiplied", "denormals times powers of two", "clspv#1646", denormals_multiplied, true,
+         is_flushed_product},
     };
     return stressors;
 }

@@ -26,7 +26,7 @@ public:
     {
     }
 
-    std::string wrong, fails;
+    std::string wrong, fails, flushes;
     std::uint32_t wrong_from = 0; ///< items of a launch
 
     [[nodiscard]] bool runs_defects() const override { return true; }
@@ -38,6 +38,7 @@ public:
             if (defect.name != name) continue;
             auto words = expected_words(defect, launch.items);
             if (name == wrong && launch.items >= wrong_from) ++words[5];
+            if (name == flushes) words[0] = 0;
             return words;
         }
         return {};
@@ -103,6 +104,24 @@ TEST(DefectRuns, of_stressors_grow_until_a_launch_is_wrong)
     EXPECT_TRUE(contains(text, "ROCm#1182")) << text;
     options.defects = true;
     EXPECT_EQ(run_defects(options, {&driver}).size(), all_defects().size());
+}
+
+TEST(DefectRuns, that_flush_denormals_pass_and_say_so)
+{
+    Driver driver("flushing");
+    driver.flushes = "denormals_multiplied";
+    Options options;
+    options.stress = true;
+    const auto runs = run_defects(options, {&driver});
+    EXPECT_EQ(exit_code(runs), 0);
+    EXPECT_EQ(runs.back().sight, DefectSight::not_seen);
+    const Report report = defect_report(runs, {}, options);
+    EXPECT_TRUE(contains(report.sheet.text(), "denormals_multiplied on flushing: flushed: ")) << report.sheet.text();
+    EXPECT_TRUE(contains(report.json["tetrace"]["defects"].back()["reason"].get<std::string>(), "flushed"));
+    EXPECT_FALSE(report.json["tetrace"]["defects"].front().contains("reason"));
+
+    driver.flushes = "denormals_copied";
+    EXPECT_EQ(exit_code(run_defects(options, {&driver})), 1) << "a copy may not";
 }
 
 TEST(DefectRuns, that_show_what_is_known_pass_and_changes_in_either_direction_fail)
