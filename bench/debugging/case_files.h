@@ -7,7 +7,7 @@
 
 namespace tetrace {
 
-/// A launch of one work-group and what it should write, for those who do not have tetrace.
+/// A launch and what it should write, for those who do not have tetrace.
 struct DumpedCase {
     std::string title;
     std::vector<KernelFile> files; ///< case.h, all that it names, and a host that runs it

@@ -113,7 +113,8 @@ std::vector<DefectRun> run_defects(const Options& options, const std::vector<Bac
             run.device = backend.devices().at(place.device);
             run.defect = &defect;
             if (run.device.usable) {
-                progress_line().show("running reduced kernels", -1, -1, run.device.name);
+                progress_line().show(defect.is_stressor ? "running stressors" : "running reduced kernels", -1, -1,
+                                     run.device.name);
                 run_on(run, backend);
                 continue;
             }
@@ -126,6 +127,12 @@ std::vector<DefectRun> run_defects(const Options& options, const std::vector<Bac
     for (DefectRun& run : runs)
         judge_by(run, expectations);
     return runs;
+}
+
+bool has_run_on(const std::string& backend, const std::vector<DefectRun>& runs)
+{
+    return std::ranges::any_of(
+        runs, [&](const DefectRun& run) { return run.backend == backend && run.sight != DefectSight::skipped; });
 }
 
 int exit_code(const std::vector<DefectRun>& runs)
@@ -163,7 +170,7 @@ std::string label_of(const std::string& backend, std::size_t index)
 struct ShownRun {
     std::string defect, what, known, backend;
     std::uint64_t index = 0, items = 0, wrong = 0;
-    std::uint64_t group_items = 0; ///< of a stressor
+    std::uint64_t group_items = 0; ///< of a stressor that was launched
     std::string device, type, driver, implementation, outcome;
     std::string detail;    ///< the first wrong word, or the reason; empty if all is as it should be
     bool is_known = false; ///< whether seeing it was expected
@@ -178,11 +185,21 @@ std::string line_or_nothing(const ResultValue& object, const char* key)
     return value ? value->line() : std::string();
 }
 
-/// launch: of a stressor, as `dump --defect` has it.
-std::string wrong_text(std::uint64_t item, std::uint64_t word, std::uint64_t expected, const std::string& launch)
+std::string wrong_text(std::uint64_t item, std::uint64_t word, std::uint64_t expected)
 {
-    return fmt::format("item {} returns {} instead of {}", item, word, expected) +
-           (launch.empty() ? "" : " (dump --defect " + launch + ")");
+    return fmt::format("item {} returns {} instead of {}", item, word, expected);
+}
+
+/// Of a stressor: the launch that was wrong or failed, to append; nothing if there was none.
+std::string launch_text(std::string_view name, std::uint64_t items, std::uint64_t group_items)
+{
+    return group_items == 0 ? std::string() : fmt::format(" (dump --defect {}:{}:{})", name, items, group_items);
+}
+
+bool is_stressor(std::string_view name)
+{
+    const auto defect = std::ranges::find(all_defects(), name, &Defect::name);
+    return defect != all_defects().end() && defect->is_stressor;
 }
 
 ShownRun read_run(const ResultValue& value)
@@ -193,7 +210,7 @@ ShownRun read_run(const ResultValue& value)
     run.known = value.at("known").line();
     run.backend = value.at("backend").line();
     run.index = value.at("device_index").count();
-    run.items = value.at("items").count();
+    if (const auto items = value.find("items")) run.items = items->count();
     if (const auto group = value.find("group_items")) run.group_items = group->count();
     run.device = value.at("device").line();
     run.type = value.at("type").line();
@@ -201,13 +218,13 @@ ShownRun read_run(const ResultValue& value)
     run.implementation = line_or_nothing(value, "implementation");
     run.outcome = value.at("outcome").line();
     run.detail = printable_text(value.text_at("reason"));
+    const std::string launch = launch_text(run.defect, run.items, run.group_items);
+    if (run.outcome == name_of(DefectSight::error)) run.detail += launch;
     if (!run.is_seen()) return run;
     const auto count = value.find("wrong"); // wrong_items has only the first
     run.wrong = count ? count->count() : value.at("wrong_items").items().size();
     const ResultValue first = value.at("first_wrong");
-    const std::string launch =
-        run.group_items == 0 ? "" : fmt::format("{}:{}:{}", run.defect, run.items, run.group_items);
-    run.detail = wrong_text(first.at("item").count(), first.at("word").count(), first.at("expected").count(), launch);
+    run.detail = wrong_text(first.at("item").count(), first.at("word").count(), first.at("expected").count()) + launch;
     return run;
 }
 
@@ -293,11 +310,12 @@ Table all_runs_table(const std::vector<ShownRun>& runs)
 
 nlohmann::json run_json(const DefectRun& run)
 {
-    nlohmann::json object = {
-        {"defect", run.defect->name},       {"what", run.defect->what},         {"known", run.defect->known},
-        {"backend", run.backend},           {"device_index", run.device_index}, {"device", run.device.name},
-        {"type", name_of(run.device.kind)}, {"outcome", name_of(run.sight)},    {"items", run.launch.items}};
-    if (run.defect->is_stressor) object["group_items"] = run.launch.group_items;
+    nlohmann::json object = {{"defect", run.defect->name},       {"what", run.defect->what},
+                             {"known", run.defect->known},       {"backend", run.backend},
+                             {"device_index", run.device_index}, {"device", run.device.name},
+                             {"type", name_of(run.device.kind)}, {"outcome", name_of(run.sight)}};
+    if (run.launch.items != 0) object["items"] = run.launch.items;
+    if (run.launch.items != 0 && run.defect->is_stressor) object["group_items"] = run.launch.group_items;
     if (!run.device.driver.empty()) object["driver"] = run.device.driver;
     if (!run.device.implementation.empty()) object["implementation"] = run.device.implementation;
     if (!run.device.library.empty()) object["library"] = run.device.library;
@@ -316,7 +334,7 @@ std::string summary(const std::vector<ShownRun>& runs)
     const auto count = [&](DefectSight sight) {
         return std::ranges::count(runs, std::string(name_of(sight)), &ShownRun::outcome);
     };
-    const bool stresses = std::ranges::any_of(runs, [](const ShownRun& run) { return run.group_items != 0; });
+    const bool stresses = std::ranges::any_of(runs, is_stressor, &ShownRun::defect);
     return fmt::format(
         "{} {} ran: {} {}; {} skipped, {} errors", count(DefectSight::seen) + count(DefectSight::not_seen),
         stresses ? "kernels" : "reduced kernels", count(DefectSight::seen),
@@ -326,12 +344,12 @@ std::string summary(const std::vector<ShownRun>& runs)
 /// The first wrong word, or the reason; empty if all is as it should be.
 std::string detail_of(const DefectRun& run)
 {
+    const std::string launch =
+        run.defect->is_stressor ? launch_text(run.defect->name, run.launch.items, run.launch.group_items) : "";
+    if (run.sight == DefectSight::error) return run.reason + launch;
     if (run.sight != DefectSight::seen) return run.reason;
     const std::uint32_t item = run.wrong.front();
-    const std::string launch = run.defect->is_stressor
-                                   ? fmt::format("{}:{}:{}", run.defect->name, run.launch.items, run.launch.group_items)
-                                   : "";
-    return wrong_text(item, run.first_word, run.defect->expected(item), launch);
+    return wrong_text(item, run.first_word, run.defect->expected(item)) + launch;
 }
 
 CaseOutcome outcome_of(const DefectRun& run)
@@ -389,21 +407,25 @@ std::vector<std::string> unknown_of(const std::vector<DefectRun>& runs, const Ex
         if (expectation == expectations.end()) continue;
         for (const auto& [name, shown] : expectation->second.defects)
             if (std::ranges::find(all_defects(), name, &Defect::name) == all_defects().end())
-                sentences.insert(
-                    fmt::format("{}: defects.{}: no reduced kernel has this name", expectation->second.file, name));
+                sentences.insert(fmt::format("{}: defects.{}: no reduced kernel or stressor has this name",
+                                             expectation->second.file, name));
     }
     return {sentences.begin(), sentences.end()};
 }
 
-/// Empty if none ran.
-std::optional<CheckVerdict> verdict_on(const std::vector<DefectRun>& runs, bool has_expectations)
+/// Empty if none ran and none had to. A required backend on which none ran fails with each kernel that was wanted.
+std::optional<CheckVerdict> verdict_on(const std::vector<DefectRun>& runs, const Options& options,
+                                       bool has_expectations)
 {
-    const bool stresses = std::ranges::any_of(runs, [](const DefectRun& run) { return run.defect->is_stressor; });
-    CheckTally tally{stresses ? "kernel" : "reduced kernel", stresses ? "kernels" : "reduced kernels"};
+    CheckTally tally{options.stress ? "kernel" : "reduced kernel", options.stress ? "kernels" : "reduced kernels"};
     for (const DefectRun& run : runs)
         if (finding_of(run)) tally.add(label_of(run.backend, run.device_index), fails(run.judged.judgement));
+    const std::size_t answered = tally.judged;
+    for (const std::string& backend : options.required)
+        for (const Defect& defect : all_defects())
+            if (is_wanted(options, defect) && !has_run_on(backend, runs)) tally.add(backend, true);
     if (tally.judged == 0) return std::nullopt;
-    return has_expectations ? verdict_by_expectations(tally.judged_text(), deviations_of(runs))
+    return has_expectations ? verdict_by_expectations(tally, deviations_of(runs), tally.judged - answered)
                             : verdict_by_count(tally);
 }
 
@@ -423,7 +445,7 @@ ShownDefects shown_defects(const ResultValue& section, const Sheet& files)
     shown.sheet.gap();
     for (const ShownRun& defect : each_defect(runs))
         shown.sheet.prose(fmt::format("{}: {}. {}: {}.", defect.defect, defect.what,
-                                      defect.group_items == 0 ? "Known in" : "Reports of the kind", defect.known));
+                                      is_stressor(defect.defect) ? "Reports of the kind" : "Known in", defect.known));
     shown.sheet.gap();
     for (const ShownRun& run : runs)
         if (!run.detail.empty()) shown.sheet.line(fmt::format("{} on {}: {}", run.defect, run.label(), run.detail));
@@ -437,7 +459,8 @@ ShownDefects shown_defects(const ResultValue& section, const Sheet& files)
 }
 
 Report defect_report(const std::vector<DefectRun>& runs, const std::vector<std::string>& missing,
-                     const Options& options, const Expectations* expectations)
+                     const Options& options, const Expectations* expectations,
+                     const std::vector<std::filesystem::path>& written)
 {
     nlohmann::json section = result_head(options);
     section["defects"] = nlohmann::json::array();
@@ -447,9 +470,11 @@ Report defect_report(const std::vector<DefectRun>& runs, const std::vector<std::
     if (expectations != nullptr)
         set_expectations(section, *expectations, implementations_of(runs), deviations_of(runs),
                          unmentioned_of(runs, *expectations), unknown_of(runs, *expectations));
-    set_verdict(section, verdict_on(runs, expectations != nullptr));
+    set_verdict(section, verdict_on(runs, options, expectations != nullptr));
     const nlohmann::json json = {{"tetrace", std::move(section)}};
     Sheet files;
+    for (const auto& file : written)
+        files.labelled("Written", file.string());
     if (options.junit && *options.junit != "-") files.labelled("JUnit", options.junit->string());
     if (options.out) files.labelled("Result", options.out->string());
     const ResultValue defects = ResultValue(json, "the defects").at("tetrace");

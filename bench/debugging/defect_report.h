@@ -8,6 +8,7 @@
 #include "core/device/backend.h"
 #include "core/device/defects.h"
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -18,13 +19,13 @@ enum class DefectSight { not_seen, seen, skipped, error };
 template <>
 inline constexpr auto enum_names<DefectSight> = names_up_to<DefectSight::error>("not seen", "seen", "skipped", "error");
 
-/// A reduced kernel on a device.
+/// A reduced kernel or a stressor on a device.
 struct DefectRun {
     std::string backend;
     std::size_t device_index = 0; ///< in the backend's devices()
     Device device;
     const Defect* defect = nullptr;
-    DefectLaunch launch; ///< the last that ran: the first that was wrong, if one was
+    DefectLaunch launch{0, 0}; ///< the last one: the first that was wrong or failed, if one was; 0 if there was none
     DefectSight sight = DefectSight::not_seen;
     std::vector<std::uint32_t> wrong;     ///< items with another word than the expected one
     std::uint32_t first_word = 0;         ///< what the first of them returned
@@ -60,9 +61,13 @@ struct ShownDefects {
 
 /// Defects against drivers: a line per defect, a column per device; what each defect is, and the first wrong word of
 /// each that was seen. missing: sentences on backends without a device. expectations: those that the runs were judged
-/// by; may be null.
+/// by; may be null. written: the files of --write-expect.
 [[nodiscard]] Report defect_report(const std::vector<DefectRun>& runs, const std::vector<std::string>& missing,
-                                   const Options& options, const Expectations* expectations = nullptr);
+                                   const Options& options, const Expectations* expectations = nullptr,
+                                   const std::vector<std::filesystem::path>& written = {});
+
+/// Whether a kernel ran on a device of this backend, or failed there.
+[[nodiscard]] bool has_run_on(const std::string& backend, const std::vector<DefectRun>& runs);
 
 /// One suite, a test case for each device and defect, which fails where the judgement does. problem: as in junit_xml().
 [[nodiscard]] std::string defect_junit(const std::vector<DefectRun>& runs, const std::string& problem = {});

@@ -63,7 +63,7 @@ CheckVerdict verdict_by_count(const CheckTally& tally, const std::string& end)
                                fmt::join(tally.failed_on, ", "), end)};
 }
 
-CheckVerdict verdict_by_expectations(const std::string& judged, const std::vector<Deviation>& deviations,
+CheckVerdict verdict_by_expectations(const CheckTally& tally, const std::vector<Deviation>& deviations,
                                      std::size_t unanswered, const std::string& end)
 {
     std::string failures, known;
@@ -72,10 +72,10 @@ CheckVerdict verdict_by_expectations(const std::string& judged, const std::vecto
     };
     add(failures, count_of(deviations, Judgement::failure), "new failure", "new failures");
     add(failures, count_of(deviations, Judgement::unexpected_pass), "unexpected pass", "unexpected passes");
-    add(failures, unanswered, "row without a result", "rows without a result");
+    if (unanswered > 0) append_item(failures, ", ", counted(unanswered, tally.one, tally.many) + " without a result");
     add(known, count_of(deviations, Judgement::known_failure), "failure as expected", "failures as expected");
     add(known, count_of(deviations, Judgement::known_flake), "known flake", "known flakes");
-    const std::string all = judged + (known.empty() ? "" : ", " + known) + end;
+    const std::string all = tally.judged_text() + (known.empty() ? "" : ", " + known) + end;
     return failures.empty() ? CheckVerdict{true, all} : CheckVerdict{false, failures + " in " + all};
 }
 
@@ -89,8 +89,7 @@ std::optional<CheckVerdict> verdict_of(const std::vector<RowRecord>& rows, const
     const std::size_t others = rows.size() - tally.judged;
     const std::string end =
         others == 0 ? "." : fmt::format("; {} more {} no result.", others, others == 1 ? "has" : "have");
-    if (judgement.has_expectations)
-        return verdict_by_expectations(tally.judged_text(), judgement.deviations, tally.unanswered, end);
+    if (judgement.has_expectations) return verdict_by_expectations(tally, judgement.deviations, tally.unanswered, end);
     return verdict_by_count(tally, end);
 }
 

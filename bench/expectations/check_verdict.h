@@ -38,9 +38,9 @@ struct CheckTally {
 /// The verdict without expectations. end: of the sentence.
 [[nodiscard]] CheckVerdict verdict_by_count(const CheckTally& tally, const std::string& end = ".");
 
-/// The verdict on what was judged by expectations. judged: "13 rows on 2 devices". unanswered: how many of them were
-/// required to have a result and have none. end: of the sentence.
-[[nodiscard]] CheckVerdict verdict_by_expectations(const std::string& judged, const std::vector<Deviation>& deviations,
+/// The verdict on what was judged by expectations. unanswered: how many of the tally were required to have a result and
+/// have none. end: of the sentence.
+[[nodiscard]] CheckVerdict verdict_by_expectations(const CheckTally& tally, const std::vector<Deviation>& deviations,
                                                    std::size_t unanswered = 0, const std::string& end = ".");
 
 /// In a result, under "verdict".

@@ -28,9 +28,8 @@ void write_junit(const std::vector<DefectRun>& runs, const Options& options, con
 void require_run(const std::vector<DefectRun>& runs, const std::vector<std::string>& backends)
 {
     for (const std::string& name : backends)
-        if (std::ranges::none_of(
-                runs, [&](const DefectRun& run) { return run.backend == name && run.sight != DefectSight::skipped; }))
-            throw Error(ErrorKind::missing, fmt::format("--require {0}: no reduced kernel ran on {0}", name));
+        if (!has_run_on(name, runs))
+            throw Error(ErrorKind::missing, fmt::format("--require {0}: no kernel of the check ran on {0}", name));
 }
 
 } // namespace
@@ -48,14 +47,9 @@ int check_defects(const Options& options)
     try {
         require_devices(options.required);
         runs = run_defects(options, all_backends(), expectations);
-        Report report = defect_report(runs, missing_devices(options), options, expectations);
-        if (target)
-            for (const auto& file : target->write(expectations_of(runs)))
-                report.sheet.labelled("Written", file.string());
-        if (!prints_junit(options))
-            deliver(options, report);
-        else if (options.out)
-            deliver_to_file(options, report);
+        std::vector<std::filesystem::path> written;
+        if (target) written = target->write(expectations_of(runs));
+        deliver_besides_junit(options, defect_report(runs, missing_devices(options), options, expectations, written));
         require_run(runs, options.required);
     } catch (const Error& error) {
         write_junit(runs, options, error.what());

@@ -81,7 +81,7 @@ struct KernelFile {
     std::string bytes;
 };
 
-/// A launch of one work-group as plain data: all that a host needs that knows nothing of tetrace. case.h has it as
+/// A launch as plain data: all that a host needs that knows nothing of tetrace. case.h has it as
 /// macros, for backends/<api>/run_case.c. The expected output is not a part of it.
 struct LaunchCase {
     /// A file, and its entry in the macro INPUTS before its name: "buffer, 5".
@@ -289,7 +289,8 @@ public:
     {
         return std::nullopt;
     }
-    /// One group of the reduced kernel of that name (core/device/defects.h). Empty if there is no host for the API.
+    /// That launch of the reduced kernel or stressor of that name (core/device/defects.h). Empty if there is no host
+    /// for the API.
     [[nodiscard]] virtual std::optional<LaunchCase> defect_case(std::string_view, const DefectLaunch&) const
     {
         return std::nullopt;

@@ -106,6 +106,34 @@ TEST(DefectRuns, of_stressors_grow_until_a_launch_is_wrong)
     EXPECT_EQ(run_defects(options, {&driver}).size(), all_defects().size());
 }
 
+TEST(DefectRuns, of_a_stressor_that_crashes_name_its_launch)
+{
+    Driver driver("crashing");
+    driver.fails = "pairs_under_pressure";
+    Options options;
+    options.stress = true;
+    const auto runs = run_defects(options, {&driver});
+    const std::string launched = "SIGSEGV (dump --defect pairs_under_pressure:1:1)";
+    const std::string text = defect_report(runs, {}, options).sheet.text();
+    EXPECT_TRUE(contains(text, launched)) << text;
+    EXPECT_TRUE(contains(defect_junit(runs), "<error message=\"" + launched + "\"/>")) << defect_junit(runs);
+}
+
+TEST(DefectRuns, without_a_required_backend_do_not_conform)
+{
+    Driver driver("good");
+    Options options;
+    options.required = {"good", "other"};
+    const auto runs = run_defects({}, {&driver});
+    EXPECT_TRUE(
+        defect_report(runs, {}, options).sheet.text().ends_with("FAILED    3 of 6 reduced kernels, all on other.\n"));
+    const Expectations none;
+    EXPECT_TRUE(contains(defect_report(runs, {}, options, &none).sheet.text(),
+                         "FAILED    3 reduced kernels without a result in 6 reduced kernels on 2 devices."));
+    options.required = {"good"};
+    EXPECT_TRUE(contains(defect_report(runs, {}, options).sheet.text(), "Conforms  3 reduced kernels on 1 device."));
+}
+
 TEST(DefectRuns, that_flush_denormals_pass_and_say_so)
 {
     Driver driver("flushing");
@@ -176,6 +204,7 @@ TEST(DefectRuns, on_nothing_usable_are_skipped_and_no_success)
     const auto runs = run_defects(options, {&driver});
     ASSERT_EQ(runs.size(), reduced_count);
     EXPECT_EQ(runs[0].sight, DefectSight::skipped);
+    EXPECT_FALSE(defect_report(runs, {}, options).json["tetrace"]["defects"][0].contains("items")) << "of no launch";
     EXPECT_EQ(exit_code(runs), 3);
     EXPECT_EQ(exit_code(std::vector<DefectRun>()), 3);
 }
