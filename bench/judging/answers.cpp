@@ -29,19 +29,31 @@ bool is_close(double value, double exact, double error)
     return std::abs(value - exact) <= error; // false for NaN
 }
 
+double lost_share(const AnswerCase& against)
+{
+    return 8 * against.tolerance.slack * against.tolerance.unit_roundoff;
+}
+
+// Of a triangle whose determinant rounding may lose: how far apart a point of it and the ray's at t may be.
+double allowed_distance(const AnswerCase& against, const MeshRay& ray, std::uint32_t triangle, double t)
+{
+    double size = length(ray.origin) + std::abs(t) * length(ray.direction);
+    for (const std::uint32_t vertex : against.mesh.triangles[triangle])
+        size += length(to_double(against.mesh.vertices[vertex]));
+    return lost_share(against) * size;
+}
+
 // Of a triangle whose determinant rounding may lose: t names the point of the triangle that u and v name.
 bool names_its_point(const AnswerCase& against, const MeshRay& ray, std::uint32_t triangle, const MeshAnswer& answer)
 {
     const auto& [i, j, k] = against.mesh.triangles[triangle];
     const Double3 a = to_double(against.mesh.vertices[i]), b = to_double(against.mesh.vertices[j]),
                   c = to_double(against.mesh.vertices[k]);
-    const double share = 8 * against.tolerance.slack * against.tolerance.unit_roundoff;
+    const double share = lost_share(against);
     const Double3 on_ray = ray.origin + ray.direction * answer.t;
     const Double3 on_triangle = a + (b - a) * answer.u + (c - a) * answer.v;
-    const double size =
-        length(ray.origin) + std::abs(answer.t) * length(ray.direction) + length(a) + length(b) + length(c);
-    return answer.u >= -share && answer.v >= -share && answer.u + answer.v <= 1 + share &&
-           length(on_ray - on_triangle) <= share * size;
+    return std::isfinite(answer.t) && answer.u >= -share && answer.v >= -share && answer.u + answer.v <= 1 + share &&
+           length(on_ray - on_triangle) <= allowed_distance(against, ray, triangle, answer.t);
 }
 
 std::string flaw_of_number(const char* name, double value, double exact, double error)
@@ -52,28 +64,65 @@ std::string flaw_of_number(const char* name, double value, double exact, double 
                                                        name, value, exact, error);
 }
 
-// Empty: t, u and v are right. edge_on: the ray runs in the answer's plane, and only t is judged, at the triangle met.
-std::string flaw_of_point(const AnswerCase& against, const MeshRay& ray, const MeshAnswer& answer, bool edge_on,
-                          std::uint32_t met)
+// Of an answer whose plane the ray runs in: only t is judged, where the ray meets another triangle. Empty: it is right.
+std::string flaw_of_t(const AnswerCase& against, const MeshRay& ray, const MeshAnswer& answer, std::uint32_t met)
 {
-    const std::uint32_t triangle = edge_on ? met : static_cast<std::uint32_t>(answer.face);
+    const double exact = against.search.point_of(ray, met).t;
+    const HitPoint allowed = allowed_point(against, ray, met);
+    const double error =
+        std::isfinite(allowed.t) ? allowed.t_error : allowed_distance(against, ray, met, exact) / length(ray.direction);
+    return flaw_of_number("t", answer.t, exact, error);
+}
+
+// Empty: t, u and v are right.
+std::string flaw_of_point(const AnswerCase& against, const MeshRay& ray, const MeshAnswer& answer)
+{
+    const auto triangle = static_cast<std::uint32_t>(answer.face);
     const HitPoint allowed = allowed_point(against, ray, triangle);
-    if (!std::isfinite(allowed.t) && !edge_on)
+    if (!std::isfinite(allowed.t))
         return names_its_point(against, ray, triangle, answer)
                    ? ""
                    : "the ray sees its triangle nearly edge-on, and its t, u and v do not name one point of it";
     const PlanePoint exact = against.search.point_of(ray, triangle);
-    if (std::string flaw = flaw_of_number("t", answer.t, exact.t, allowed.t_error); !flaw.empty() || edge_on)
-        return flaw;
+    if (std::string flaw = flaw_of_number("t", answer.t, exact.t, allowed.t_error); !flaw.empty()) return flaw;
     if (std::string flaw = flaw_of_number("u", answer.u, exact.u, allowed.u_error); !flaw.empty()) return flaw;
     return flaw_of_number("v", answer.v, exact.v, allowed.v_error);
+}
+
+// From the origin to the points from a to b.
+double distance_to_segment(Double3 a, Double3 b)
+{
+    const Double3 along = b - a;
+    const double square = dot(along, along);
+    const double share = square > 0 ? std::clamp(-dot(a, along) / square, 0.0, 1.0) : 0;
+    return length(a + along * share);
+}
+
+// passes_edge() of a triangle whose determinant rounding may lose.
+bool passes_edge_of_lost(const AnswerCase& against, const MeshRay& ray, std::uint32_t triangle)
+{
+    const double speed = length(ray.direction);
+    const Double3 along = ray.direction * (1 / speed);
+    std::array<Double3, 3> beside; // the corners, as the ray sees them
+    std::array<double, 3> t;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Double3 corner = to_double(against.mesh.vertices[against.mesh.triangles[triangle].at(i)]) - ray.origin;
+        beside.at(i) = cross(corner, along);
+        t.at(i) = dot(corner, along) / speed;
+    }
+    const auto [first, last] = std::ranges::minmax(t);
+    const double allowed = allowed_distance(against, ray, triangle, std::max(std::abs(first), std::abs(last)));
+    if (last < ray.t_min - allowed / speed || first > ray.t_max + allowed / speed) return false;
+    return distance_to_segment(beside[0], beside[1]) <= allowed ||
+           distance_to_segment(beside[1], beside[2]) <= allowed || distance_to_segment(beside[2], beside[0]) <= allowed;
 }
 
 // Whether the ray passes an edge of the triangle as near as u and v may be wrong.
 bool passes_edge(const AnswerCase& against, const MeshRay& ray, std::uint32_t triangle)
 {
     const HitPoint point = allowed_point(against, ray, triangle);
-    if (!std::isfinite(point.t)) return true;
+    if (!std::isfinite(point.t)) return passes_edge_of_lost(against, ray, triangle);
+    if (point.t < ray.t_min - point.t_error || point.t > ray.t_max + point.t_error) return false;
     const double w = 1 - point.u - point.v, w_error = point.u_error + point.v_error;
     const bool is_beside = point.u < -point.u_error || point.v < -point.v_error || w < -w_error;
     return !is_beside && (point.u <= point.u_error || point.v <= point.v_error || w <= w_error);
@@ -98,7 +147,8 @@ void judge_triangle(const AnswerCase& against, const MeshRay& ray, const MeshAns
     const bool is_met = std::ranges::binary_search(judged.nearest, face);
     if (!is_met && !against.search.holds_point_of(ray, face, met))
         set_fault(judged, AnswerVerdict::wrong, "another triangle is nearer, or the ray does not meet this one");
-    else if (std::string flaw = flaw_of_point(against, ray, answer, !is_met, met); !flaw.empty())
+    else if (std::string flaw = is_met ? flaw_of_point(against, ray, answer) : flaw_of_t(against, ray, answer, met);
+             !flaw.empty())
         set_fault(judged, AnswerVerdict::inaccurate, std::move(flaw));
     else if (!is_met || judged.nearest.size() > 1)
         judged.verdict = AnswerVerdict::tie;
@@ -119,7 +169,7 @@ JudgedAnswer judge_answer(const AnswerCase& against, const MeshRay& ray, const M
         set_fault(judged, AnswerVerdict::invented, "the ray meets no triangle");
     else
         judge_triangle(against, ray, answer, judged);
-    if (is_fault(judged.verdict))
+    if (is_fault(judged.verdict) && judged.verdict != AnswerVerdict::inaccurate)
         judged.is_near_edge = (is_hit && passes_edge(against, ray, judged.nearest.front())) ||
                               (names_one && passes_edge(against, ray, static_cast<std::uint32_t>(answer.face)));
     return judged;

@@ -73,8 +73,8 @@ struct FaultyRay {
 
 struct AnswerCounts {
     std::array<std::uint64_t, answer_verdicts> of{};
-    /// Faults whose ray passes an edge of the nearest triangle, or of the one that the answer names, as near as u and v
-    /// may be wrong: rounding may explain them.
+    /// Faults but `inaccurate` whose ray passes an edge of the nearest triangle, or of the one that the answer names,
+    /// as near as u and v may be wrong: rounding may explain them.
     std::uint64_t near_edge = 0;
     std::array<std::optional<FaultyRay>, answer_verdicts> first{}; ///< of each kind of fault, by number
 

@@ -41,8 +41,8 @@ std::vector<OptionRow> mesh_ray_options()
          "through vertices, along edges, in the planes of faces, from faces, at grazing angles, in thin triangles, and "
          "with an end on the mesh. Default: all.",
          making, true, append("--rays", &Options::made_rays), usual_for(every_verb, "kind of rays: {}")},
-        {"Rays", "--count", "N", "Make this many rays of each kind, 1 to 100000000. Default: 65536.", making, false,
-         set_count("--count", &Options::made_count, 1, 100'000'000), usual_for(every_verb, "rays of each kind")},
+        {"Rays", "--count", "N", "Make this many rays of each kind, 1 to 10000000. Default: 65536.", making, false,
+         set_count("--count", &Options::made_count, 1, 10'000'000), usual_for(every_verb, "rays of each kind")},
         {"Rays", "--answers", "FILE.npy",
          "Also write the exact answers: face, t, u, v for each ray; -1, 0, 0, 0 for a miss. Default: none.", making,
          false, set_path("--answers", &Options::answer_file), usual_for(every_verb, "also write the exact answers")},
@@ -59,6 +59,10 @@ std::vector<OptionRow> mesh_ray_options()
          "Default: 2.",
          judging, false, [](Options& o, const std::string& v) { o.slack = parse_slack(v); },
          usual_for(every_verb, "times what rounding can lose in t, u, v")},
+        {"Rays", "--threads", "N",
+         "Threads that decide rays; 0 means OMP_NUM_THREADS if it is set, or else all CPUs that the process may use. "
+         "Default: 0.",
+         making | judging, false, set_count("--threads", &Options::threads, 0, 4096)},
     };
 }
 

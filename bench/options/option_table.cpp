@@ -282,7 +282,7 @@ std::vector<OptionRow> ray_options()
          "container with a CPU quota, the quota rounded down. 'bench' accepts a list, for example 1,2,4, and measures "
          "each row of a processor with each number; all else has the largest. Scenes are always built with 0. Default: "
          "0.",
-         with_rays | bit(Verb::rays) | bit(Verb::judge), true,
+         with_rays, true,
          [](Options& o, const std::string& v) {
              o.thread_counts.push_back(static_cast<unsigned>(parse_count("--threads", v, 0, 4096)));
              o.threads = std::ranges::max(o.thread_counts);

@@ -81,10 +81,10 @@ std::vector<OptionRow> output_options()
          "it are not repeated. If the journal does not exist, start one.",
          sharing, false, set(&Options::resume)},
         {"Output", "--junit", "FILE",
-         "Also write the result to FILE as JUnit XML, one test case per row; '-' means standard output, instead of "
-         "the table. Default: none.",
+         "Also write the result to FILE as JUnit XML, one test case per row, of 'judge' one per kind of fault; '-' "
+         "means standard output, instead of the table. Default: none.",
          sharing | bit(Verb::merge) | bit(Verb::judge), false, set_path("--junit", &Options::junit),
-         usual_for(bit(Verb::check) | bit(Verb::merge) | bit(Verb::judge), "also as JUnit XML, a test case per row")},
+         usual_for(bit(Verb::check) | bit(Verb::merge) | bit(Verb::judge), "also as JUnit XML")},
     };
 }
 

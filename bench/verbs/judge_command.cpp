@@ -2,6 +2,7 @@
 #include "bench/judging/judged_report.h"
 #include "bench/options/identity.h"
 #include "bench/output/report.h"
+#include "bench/terminal/interrupts.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
 #include "bench/verbs/judged_mesh.h"
@@ -58,6 +59,11 @@ JudgedFiles read_files(const Options& options)
     return files;
 }
 
+void stop_if_interrupted()
+{
+    if (is_interrupted()) throw Error(ErrorKind::interrupted, "judge: interrupted; not all answers were judged");
+}
+
 JudgedRun judged_run(const Options& options)
 {
     const JudgedFiles files = read_files(options);
@@ -72,8 +78,11 @@ JudgedRun judged_run(const Options& options)
     run.tolerance = {run.rays_are_double && run.hits_are_double ? 0x1p-53 : 0x1p-24, options.slack};
     const Stopwatch watch;
     const NearestSearch search(read.mesh);
-    run.counts = judge_answers({read.mesh, search, run.tolerance}, rays, answers, options.threads,
-                               [](double done) { progress_line().show("judging", done); });
+    run.counts = judge_answers({read.mesh, search, run.tolerance}, rays, answers, options.threads, [](double done) {
+        stop_if_interrupted();
+        progress_line().show("judging", done);
+    });
+    stop_if_interrupted();
     run.seconds = watch.seconds();
     return run;
 }
@@ -105,6 +114,8 @@ void require_files(const Options& options)
 int judge_command(const Options& options)
 {
     require_files(options);
+    const StopWhenInterrupted stop;
+    if (options.junit) something_to_keep(); // JUnit then says that the run was ended
     try {
         const JudgedRun run = judged_run(options);
         deliver_besides_junit(options, judged_report(run, options));

@@ -42,7 +42,6 @@ std::vector<MeshRay> exact_rays(const std::vector<RayNumbers>& numbers)
 void write_answers(const std::filesystem::path& file, const TriangleMesh& mesh, const std::vector<RayNumbers>& rays,
                    unsigned threads)
 {
-    require_exact_numbers(mesh);
     const NearestSearch search(mesh);
     write_npy(file, 4, right_answers(search, exact_rays(rays), threads, [](double done) {
                   progress_line().show("finding the exact answers", done);
@@ -65,6 +64,7 @@ int rays_command(const Options& options)
         check_not_an_input(*options.answer_file, {*options.out}, "--answers"); // by a link
     }
     const ReadMesh read = read_judged_mesh(options);
+    if (options.answer_file) require_exact_numbers(read.mesh);
     std::vector<RayNumbers> rays;
     for (const MadeRays kind : options.made_rays.empty() ? values_of<MadeRays>() : options.made_rays) {
         progress_line().show(fmt::format("making {} rays", name_of(kind)), -1);

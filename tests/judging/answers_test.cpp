@@ -255,6 +255,57 @@ TEST(Answers, may_name_a_triangle_seen_edge_on_where_another_is_met)
     EXPECT_EQ(corner.judge(along, {0, 1.25, 0.5, 0.25}).verdict, AnswerVerdict::inaccurate);
 }
 
+TEST(Answers, that_name_a_triangle_seen_edge_on_have_a_t_even_where_rounding_loses_the_one_met)
+{
+    // The second triangle is the first one's plane continued, but for one unit of float32.
+    const Judged fold({{{0, 0, 0}, {1, 0, 1}, {0, 1, 1}, {0, -1, -1 + 0x1p-24f}}, {{0, 1, 2}, {0, 1, 3}}});
+    const MeshRay along{{-0.5, -1, -1.5}, {1, 1, 2}, 0, no_end};
+    ASSERT_FALSE(std::isfinite(point_of(fold.mesh, along.origin, along.direction, 1, 0x1p-24).t));
+    ASSERT_EQ(fold.search.nearest(along), std::vector<std::uint32_t>{1});
+    for (const double face : {0.0, 1.0}) {
+        EXPECT_FALSE(is_fault(fold.judge(along, {face, 1, 0.5, 0}).verdict)) << face;
+        for (const double t : {1.25, -1.0, 1e9, no_end, static_cast<double>(NAN)})
+            EXPECT_EQ(fold.judge(along, {face, t, 0.5, 0}).verdict, AnswerVerdict::inaccurate) << face << ", " << t;
+    }
+}
+
+TEST(Answers, are_near_an_edge_where_the_choice_of_a_triangle_is)
+{
+    TriangleMesh mesh = square();
+    const auto add_upright = [&](float x, float z) { // seen edge-on from above
+        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+        mesh.vertices.insert(mesh.vertices.end(), {{x, 0, z}, {x, 1, z}, {x, 1, z + 0.25f}});
+        mesh.triangles.push_back({first, first + 1, first + 2});
+    };
+    for (const auto& [x, z] : {std::pair{0.75f, 0.5f}, {100.0f, 0.5f}, {0.75f, 5.0f}}) // 3: passed, 4: far, 5: behind
+        add_upright(x, z);
+    const Judged judged(mesh);
+    const MeshRay inside{{0.75, 0.25, 1}, {0, 0, -1}, 0, no_end}, on_edge{{0.5, 0.5, 1}, {0, 0, -1}, 0, no_end},
+        beside_edge{{0.25, -0.5 - 0x1p-26, 1}, {0.25, 0.5, -1}, 0, no_end},
+        short_one{{0.5, 0.5, 1}, {0, 0, -1}, 0, 0.5};
+    const MeshAnswer miss{}, first{0, 1, 0.5, 0.25};
+    const struct {
+        MeshRay ray;
+        MeshAnswer answer;
+        AnswerVerdict verdict;
+        bool is_near_edge;
+    } cases[] = {
+        {inside, miss, AnswerVerdict::missed, false},
+        {on_edge, miss, AnswerVerdict::missed, true},
+        {on_edge, {0, 2, 0, 0.5}, AnswerVerdict::inaccurate, false},
+        {beside_edge, first, AnswerVerdict::invented, true},
+        {short_one, first, AnswerVerdict::invented, false}, // it ends before the edge
+        {inside, {3, 0.5, 0, 0}, AnswerVerdict::wrong, true},
+        {inside, {4, 0.5, 0, 0}, AnswerVerdict::wrong, false},
+        {inside, {5, 0.5, 0, 0}, AnswerVerdict::wrong, false},
+    };
+    for (const auto& [ray, answer, verdict, is_near_edge] : cases) {
+        const JudgedAnswer found = judged.judge(ray, answer);
+        EXPECT_EQ(name_of(found.verdict), name_of(verdict)) << &ray - &cases[0].ray << ": " << found.reason;
+        EXPECT_EQ(found.is_near_edge, is_near_edge) << &ray - &cases[0].ray;
+    }
+}
+
 TEST(Answers, are_judged_where_float32_ends)
 {
     // Far off the grid of scenes, and apart by less than float64 keeps in a product.
@@ -309,6 +360,13 @@ TEST(Answers, of_bad_files_are_refused_with_the_row)
         EXPECT_NE(text.find(says), std::string::npos) << text << "\nlacks " << says;
         EXPECT_NE(text.find("rays.npy: row 0"), std::string::npos) << text;
     }
+    const Judged judged(square());
+    for (const double far :
+         {static_cast<double>(std::numeric_limits<float>::max()), 1e300}) // "no end" of many programs
+        for (const double t_min : {-far, 0.0, 5e-324}) {
+            const auto accepted = mesh_rays_of({1, 8, true, {0.75, 0.25, 1, t_min, 0, 0, -1, far}}, "rays.npy");
+            EXPECT_EQ(judged.judge(accepted.front(), {0, 1, 0.5, 0.25}).verdict, AnswerVerdict::right);
+        }
     for (const double face : {0.5, static_cast<double>(NAN)})
         EXPECT_NE(message_of([&] {
                       return mesh_answers_of({1, 4, true, {face, 0, 0, 0}}, "hits.npy");

@@ -103,6 +103,7 @@ TEST_F(JudgeProgram, refuses_what_does_not_fit_with_exit_code_2)
         {"rays --scene cubes", "--out FILE.npy is missing"},
         {"rays --scene cubes --out new.npy --answers ./new.npy", "it is the file of --out"},
         {"rays --scene cubes --out rays.txt", "does not end in .npy"},
+        {"rays --scene cubes --out new.npy --count 10000001", "--count"},
         {"rays --scene cubes --rays shadow --out rays.npy", "primary, random or hard"},
         {"rays --scene cubes,bunny --out rays.npy", "given several times"},
     };
