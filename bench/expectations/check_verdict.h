@@ -23,7 +23,7 @@ struct CheckVerdict {
 struct CheckTally {
     const char *one, *many; ///< "row", "rows"
     std::size_t judged = 0, failed = 0;
-    std::set<std::string> devices, failed_on; ///< labels
+    std::set<std::string> devices{}, failed_on{}; ///< labels
 
     void add(const std::string& device, bool fails);
     [[nodiscard]] std::string judged_text() const; ///< "13 rows on 2 devices"
