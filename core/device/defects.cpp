@@ -3,6 +3,7 @@
 #include "core/device/stressors.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <numeric>
 #include <system_error>
@@ -35,6 +36,44 @@ std::uint32_t counted_steps(std::uint32_t item)
     return end * word_count + at;
 }
 
+/// x and y of a corner, and how far along it is.
+using Corner = std::array<std::int64_t, 3>;
+
+/// Word i is i.
+std::uint32_t scattered_index(std::uint32_t index)
+{
+    return index % word_count ^ (index * 2654435761u);
+}
+
+Corner corner_of(std::uint32_t index)
+{
+    const std::uint32_t word = scattered_index(index);
+    return {word % 1024 - 500ll, word / 1024 % 1024 - 499ll, word / 1024 / 1024};
+}
+
+/// By integers, which the floats of the kernel hold.
+std::uint32_t steps_by_corners(std::uint32_t item)
+{
+    const auto area = [](const Corner& a, const Corner& b) { return a[0] * b[1] - a[1] * b[0]; };
+    std::array<Corner, 3> corners = {corner_of(4 * item), corner_of(4 * item + 1), corner_of(4 * item + 2)};
+    const auto is_before_end = [&](const Corner& corner) { return corner[2] <= 2048 + 128 * std::int64_t{item}; };
+    std::uint32_t rotation = 0, exit = item * 4, steps = 1;
+    while (exit % 4 != 3 && steps < 40 + item && std::ranges::any_of(corners, is_before_end)) {
+        ++steps;
+        const std::uint32_t record = exit / 4;
+        const Corner apex = corner_of(record);
+        const std::int64_t first = area(corners[2], apex);
+        const std::int64_t second = area(corners[first > 0 ? 1 : 0], apex);
+        rotation = (rotation + exit % 4) % 3;
+        if (first == 0 || second == 0) break;
+        const std::uint32_t replaced = first > 0 ? (second > 0 ? 2 : 0) : (second > 0 ? 1 : 2);
+        corners[replaced] = apex;
+        const std::uint32_t word = scattered_index(3 * record + (replaced + 3 - rotation) % 3);
+        exit = (word % 37 == 0 ? word | 3 : word - word % 4 + word / 32 % 3) % (1u << 28);
+    }
+    return steps * 64 + item;
+}
+
 } // namespace
 
 std::span<const Defect> all_defects()
@@ -48,6 +87,9 @@ std::span<const Defect> all_defects()
              after_70000_steps},
             {"steps_of_nested_loops", "steps counted in nested loops, the inner of which ends at a tie",
              "lavapipe of Mesa 22.3", counted_steps},
+            {"steps_beside_selected_structs",
+             "steps counted in a struct, others of whose members are structs that each step selects",
+             "OpenCL of NVIDIA 580.159", steps_by_corners},
         };
         const auto stressing = all_stressors();
         all.insert(all.end(), stressing.begin(), stressing.end());

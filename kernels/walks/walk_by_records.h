@@ -68,10 +68,10 @@ KERNEL_FN Walker next_face(SceneView scene, Ray ray, Shear shear, Walker at)
     Walker next = at;
     next.rotation = rotation;
     next.before = at.exit;
-    next.steps = at.steps + 1u;
     next = with_apex(next, apex, replaced);
     uint exit = EXIT_REPLACING(scene, exits, rotation, replaced);
     next.exit = replaced == UNDECIDED ? EXIT_AT_TIE : exit;
+    next.steps = at.steps + 1u; // last: the OpenCL of NVIDIA 580.159 loses steps that are counted before the selects
     return next;
 }
 #endif

@@ -49,14 +49,14 @@ TEST_F(CheckDefects, needs_no_scene_and_is_good_where_nothing_is_seen)
 {
     const Ended ended = run("check --defects --backend openmp,cuda-host --out defects.json");
     EXPECT_EQ(ended.code, 0) << ended.errors;
-    EXPECT_TRUE(contains(ended.out, "6 reduced kernels ran: 0 show their defect")) << ended.out;
-    EXPECT_TRUE(ended.out.ends_with("Conforms  6 reduced kernels on 2 devices.\n")) << ended.out;
+    EXPECT_TRUE(contains(ended.out, "8 reduced kernels ran: 0 show their defect")) << ended.out;
+    EXPECT_TRUE(ended.out.ends_with("Conforms  8 reduced kernels on 2 devices.\n")) << ended.out;
     const Ended writing = run("check --defects --backend openmp,cuda-host --write-expect written.json");
     EXPECT_TRUE(contains(writing.out, "Written   written.json\n")) << writing.out;
-    EXPECT_TRUE(writing.out.ends_with("Conforms  6 reduced kernels on 2 devices.\n")) << writing.out;
+    EXPECT_TRUE(writing.out.ends_with("Conforms  8 reduced kernels on 2 devices.\n")) << writing.out;
     const Ended lacking = run("check --defects --backend openmp --require cuda-host");
     EXPECT_EQ(lacking.code, 3) << lacking.errors;
-    EXPECT_TRUE(lacking.out.ends_with("FAILED    3 of 6 reduced kernels, all on cuda-host.\n")) << lacking.out;
+    EXPECT_TRUE(lacking.out.ends_with("FAILED    4 of 8 reduced kernels, all on cuda-host.\n")) << lacking.out;
     EXPECT_EQ(run("check --defects --backend embree").code, 3);
     write_file(folder_ / "openmp.json", R"({"defects": {"loop": "right"}})");
     const Ended expecting = run("check --defects --backend openmp --expect openmp.json");

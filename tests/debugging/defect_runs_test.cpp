@@ -79,7 +79,7 @@ TEST(DefectRuns, fail_where_one_item_is_wrong_and_name_it)
     const Report report = defect_report(runs, {}, {});
     EXPECT_TRUE(contains(report.sheet.text(), "SEEN: 1 of 16 items")) << report.sheet.text();
     EXPECT_TRUE(contains(report.sheet.text(), "item 5 returns 6 instead of 5")) << report.sheet.text();
-    EXPECT_TRUE(contains(report.sheet.text(), "FAILED    1 of 3 reduced kernels, on bad.")) << report.sheet.text();
+    EXPECT_TRUE(contains(report.sheet.text(), "FAILED    1 of 4 reduced kernels, on bad.")) << report.sheet.text();
     const std::string xml = defect_junit(runs);
     EXPECT_TRUE(contains(xml, "failures=\"1\" errors=\"0\"")) << xml;
     EXPECT_TRUE(contains(xml, "classname=\"tetrace.bad.a-device\" name=\"defect/value_after_divergent_loop\"")) << xml;
@@ -126,12 +126,12 @@ TEST(DefectRuns, without_a_required_backend_do_not_conform)
     options.required = {"good", "other"};
     const auto runs = run_defects({}, {&driver});
     EXPECT_TRUE(
-        defect_report(runs, {}, options).sheet.text().ends_with("FAILED    3 of 6 reduced kernels, all on other.\n"));
+        defect_report(runs, {}, options).sheet.text().ends_with("FAILED    4 of 8 reduced kernels, all on other.\n"));
     const Expectations none;
     EXPECT_TRUE(contains(defect_report(runs, {}, options, &none).sheet.text(),
-                         "FAILED    3 reduced kernels without a result in 6 reduced kernels on 2 devices."));
+                         "FAILED    4 reduced kernels without a result in 8 reduced kernels on 2 devices."));
     options.required = {"good"};
-    EXPECT_TRUE(contains(defect_report(runs, {}, options).sheet.text(), "Conforms  3 reduced kernels on 1 device."));
+    EXPECT_TRUE(contains(defect_report(runs, {}, options).sheet.text(), "Conforms  4 reduced kernels on 1 device."));
 }
 
 TEST(DefectRuns, that_flush_denormals_pass_and_say_so)
@@ -164,7 +164,7 @@ TEST(DefectRuns, that_show_what_is_known_pass_and_changes_in_either_direction_fa
     const auto text = [&] { return defect_report(judged(), {}, {}, &known).sheet.text(); };
 
     EXPECT_EQ(exit_code(judged()), 0);
-    EXPECT_TRUE(contains(text(), "Conforms  3 reduced kernels on 1 device, 1 failure as expected.")) << text();
+    EXPECT_TRUE(contains(text(), "Conforms  4 reduced kernels on 1 device, 1 failure as expected.")) << text();
     EXPECT_TRUE(contains(text(), "known: 1 of 16 items")) << text();
     EXPECT_TRUE(contains(defect_junit(judged()), "failures=\"0\" errors=\"0\""));
 
@@ -177,7 +177,7 @@ TEST(DefectRuns, that_show_what_is_known_pass_and_changes_in_either_direction_fa
 
     driver.wrong = "steps_of_nested_loops";
     EXPECT_EQ(exit_code(judged()), 1);
-    EXPECT_TRUE(contains(text(), "FAILED    1 new failure, 1 unexpected pass in 3 reduced kernels on 1 device."))
+    EXPECT_TRUE(contains(text(), "FAILED    1 new failure, 1 unexpected pass in 4 reduced kernels on 1 device."))
         << text();
 
     driver.wrong = loop, driver.fails = "steps_of_nested_loops";
