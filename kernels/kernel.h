@@ -11,7 +11,7 @@
 // DEFERS_TIES                                     entry file                   entry_on_path.h, walk_*.h, bvh.h
 // KEEP_BRANCH, MAYBE_UNUSED, PRECISE, ...         dialect                      walk_by_records.h, bvh/
 // HOST_SSE2                                       openmp/kernel.cpp            bvh/
-// LANES_VOTE                                      dialect_cuda.h               structure_*.h, cwbvh.h
+// LANES_VOTE                                      dialect_cuda.h               structure_bvh.h, cwbvh.h
 // HAS_RECORDS, RECORD_EXITS, RecordExits          half32.h, tet64.h            structure_cdt.h, walk_by_records.h
 // EXIT_REPLACING                                  half32.h, tet64.h            walk_by_records.h
 // ROTATION_OF_CORNERS, ROTATION_AFTER             half32.h, tet64.h            walk_by_records.h
@@ -21,7 +21,7 @@
 // AS_SEEN                                         plucker.h, stp.h             whole_face.h
 // WALKS_PATHS                                     project.h                    structure_cdt.h
 // WalkStart, WALK_START_AT, WALK_START_IN         walk_by_records.h            walk_along_paths.h, trace_along_paths.h
-// TRAVERSAL_ENTRIES, _AT_ROOT, _GOES_ON           bvh2.h, bvh4.h, cwbvh.h      bvh/refill_cuda.h
+// TRAVERSAL_ENTRIES, _AT_ROOT, _GOES_ON           bvh2.h, bvh4.h, cwbvh.h      refill_cuda.h
 // REFILLS_LANES                                   refill_cuda.h                backends/cuda/kernel.cu
 // ENOUGH_LANES                                    refill_cuda.h, tests         refill_cuda.h
 // TAKES_RAYS, STARTS_IN_TETS                      methods, entry.h, bvh        entry files: which tasks there are

@@ -71,20 +71,12 @@ struct Rays {
     {
         return __ldg(given + number * ray_count(launch) + ray_index(pixel(item)));
     }
-    __device__ static constexpr bool are_given() { return ARE_GIVEN; }
-    __device__ uint half_face(uint item) const { return quad(item, 0u).w; } // of given rays
     __device__ Ray ray(uint item) const
     {
         if (ARE_GIVEN) return given_ray(quad(item, 0u), quad(item, 1u));
         return primary_ray(launch.trace, pixel(item).x, pixel(item).y);
     }
     __device__ real end(uint item) const { return ARE_GIVEN ? as_real(quad(item, 1u).w) : real(NO_END); }
-    // By trace() or trace_given().
-    __device__ Hit traced(SceneView scene, uint item) const
-    {
-        if (ARE_GIVEN) return trace_given(scene, launch.trace, quad(item, 0u), quad(item, 1u));
-        return trace(scene, launch.trace, ray(item));
-    }
     __device__ void write(uint item, Hit hit) const { write_hit(hit, output_word(launch, pixel(item)), output); }
 };
 

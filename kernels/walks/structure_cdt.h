@@ -13,9 +13,6 @@
 #endif
 
 #include "kernels/walks/trace_along_paths.h"
-#if defined(HAS_RECORDS) && defined(LANES_VOTE)
-#include "kernels/walks/refill_cuda.h"
-#endif
 #else
 #include "kernels/walks/walk_by_neighbours.h"
 #endif

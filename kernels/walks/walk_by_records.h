@@ -36,12 +36,6 @@ KERNEL_FN bool goes_on(Walker at, uint pause, bool is_endless, real reach)
            (is_endless || at.p0.along <= reach || at.p1.along <= reach || at.p2.along <= reach);
 }
 
-KERNEL_FN real reach_of(Ray ray, real end)
-{
-    PRECISE real reach = end * dot3(ray.direction, ray.direction);
-    return reach;
-}
-
 // The walker with the apex of its previous record in place of a carried vertex; its exit is still to be set.
 KERNEL_FN Walker with_apex(Walker at, Carried apex, uint replaced)
 {
@@ -144,19 +138,6 @@ KERNEL_FN WalkStart walk_start_in(SceneView scene, Ray ray, Shear shear, uint te
     return first;
 }
 
-// The hit of a walk that does not go on. end: the ray's.
-KERNEL_FN Hit hit_after(SceneView scene, TraceParams params, Ray ray, Walker at, real end)
-{
-    if (at.steps == 0u) return make_no_hit(NO_HIT, NO_TET, 0u);
-    uint tet = record_across(at.before) >> 2u;
-    uint deferred =
-        DEFERS_TIES ? EXIT_AT_TIE : NO_HALF_FACE; // no constant operand of ||, of which PoCL's compiler warns
-    if (at.exit == NO_HALF_FACE || at.exit == deferred)
-        return make_no_hit(at.exit == NO_HALF_FACE ? NO_HIT : DEFERRED, tet, at.steps);
-    if ((at.exit & 3u) == EXIT_END) return hit_on(scene, ray, record_across(at.exit), tet, at.steps, end);
-    return make_no_hit(end < real(NO_END) && at.steps < params.max_steps ? NO_HIT : LOST, tet, at.steps);
-}
-
 // From its beginning to the ray's hit. start, end and the use of exit_ahead(): as in walk_along_paths.h. Loops test at
 // their end, and ties are decided after the inner loop: some devices execute a conditional block even if no lane needs
 // it (docs/spec/devices.md, W1).
@@ -164,7 +145,7 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, WalkStart first
 {
     Shear shear = shear_of(ray);
     bool is_endless = end >= real(NO_END);
-    real reach = reach_of(ray, end);
+    PRECISE real reach = end * dot3(ray.direction, ray.direction);
     bool may_begin_anew = start != FROM_OUTSIDE;
     uint pause = may_begin_anew ? first_pause(params) : params.max_steps;
     Walker at = first.at;
@@ -189,7 +170,14 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, WalkStart first
         if (ahead == NO_HALF_FACE) break;
         at = walker_leaving(scene, ray, shear, ahead >> 2u, ahead & 3u);
     }
-    return hit_after(scene, params, ray, at, end);
+    if (at.steps == 0u) return make_no_hit(NO_HIT, NO_TET, 0u);
+    uint tet = record_across(at.before) >> 2u;
+    uint deferred =
+        DEFERS_TIES ? EXIT_AT_TIE : NO_HALF_FACE; // no constant operand of ||, of which PoCL's compiler warns
+    if (at.exit == NO_HALF_FACE || at.exit == deferred)
+        return make_no_hit(at.exit == NO_HALF_FACE ? NO_HIT : DEFERRED, tet, at.steps);
+    if ((at.exit & 3u) == EXIT_END) return hit_on(scene, ray, record_across(at.exit), tet, at.steps, end);
+    return make_no_hit(!is_endless && at.steps < params.max_steps ? NO_HIT : LOST, tet, at.steps);
 }
 
 #endif

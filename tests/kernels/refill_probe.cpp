@@ -1,5 +1,5 @@
 // The persistent entries of backends/cuda/kernel.cu on warps of many lanes, for refill_test.cpp: compiled once for each
-// layout, as kernel by_warps_bvh2 and so on. The host emulation's own warps have one lane.
+// layout of BVHs, as kernel by_warps_bvh2 and so on. The host emulation's own warps have one lane.
 #include "tests/kernels/refill_probe.h"
 #include "backends/cuda_host/shim.h"
 #include "kernels/layouts/layout.h"
@@ -22,14 +22,10 @@ thread_local tetrace::test::Patience patience;
 #define PUTS_TRIANGLES_OFF (patience.puts_triangles_off)
 #define COUNT_NODE() ++tetrace::test::Warp::since_vote.nodes
 #define COUNT_TRIANGLE() ++tetrace::test::Warp::since_vote.triangles
-#undef STEPS_BEFORE_DOUBT
-#define STEPS_BEFORE_DOUBT 6u // walks ask early whether they go in circles
 #include "backends/cuda/kernel.cu"
 
 constexpr uint max_warps = 2;
-#ifdef SET_ENTRY
 thread_local uint group_words[STACK_ENTRY_WORDS * STACK_TOP * max_warps * warpSize];
-#endif
 
 const uint4* quads(std::span<const tetrace::Quad> all)
 {
@@ -40,18 +36,11 @@ void run_thread(uint thread, const tetrace::test::WarpLaunch& launch, uint* coun
 {
     tetrace::cuda_host::current_thread = {thread, 0, 0};
     tetrace::cuda_host::block_size = {launch.warps * warpSize, 1, 1};
+    const SceneView scene{quads(launch.packed.nodes), quads(launch.packed.leaf_triangles), launch.packed.divisions, {}};
     const auto params = std::bit_cast<LaunchParams>(launch.params);
-#define SCENE_ARRAY(element, name, member, binding) reinterpret_cast<const element*>(launch.packed.member.data()),
-    const SceneView scene{
-#include KERNEL_ARRAYS_HEADER
-        launch.packed.divisions, params.domain};
     const uint tiles = tetrace::tile_count(launch.params);
     uint* const output = launch.output.data();
     patience = launch.patience;
-#ifdef STARTS_IN_TETS
-    if (params.trace.start_tet != NO_TET)
-        return ENTRY(inside_persistent_, KERNEL_NAME)(scene, params, output, counter, tiles);
-#endif
     if (launch.rays.empty())
         ENTRY(trace_persistent_, KERNEL_NAME)(scene, params, output, counter, tiles);
     else

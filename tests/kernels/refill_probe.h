@@ -28,7 +28,7 @@ public:
     void join(std::uint32_t lane);
     /// Bit i of the result is lane i's vote. named: the lanes that vote, one bit each.
     std::uint32_t ballot(std::uint32_t named, bool vote);
-    /// The value of lane `from`; of all lanes. Lanes fetch by it (kernels/refill_cuda.h).
+    /// The value of lane `from`; of all lanes. Lanes fetch by it (kernels/bvh/refill_cuda.h).
     std::uint32_t shuffle(std::uint32_t value, std::uint32_t from);
 
     /// How often lanes fetched while others of the warp went on with their rays.
@@ -73,8 +73,6 @@ struct WarpCounts {
 };
 
 /// Runs backends/cuda/kernel.cu by a block of several warps.
-WarpCounts trace_by_warps_half32(const WarpLaunch& launch);
-WarpCounts trace_by_warps_tet64(const WarpLaunch& launch);
 WarpCounts trace_by_warps_bvh2(const WarpLaunch& launch);
 WarpCounts trace_by_warps_bvh4(const WarpLaunch& launch);
 WarpCounts trace_by_warps_cwbvh(const WarpLaunch& launch);

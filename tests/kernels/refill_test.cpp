@@ -1,5 +1,5 @@
-// CUDA's persistent threads, without a GPU: warps of 32 lanes that go in lockstep give their ended lanes new rays in
-// the middle of the others' walks or traversals, and the hits are openmp's.
+// CUDA's persistent threads on BVHs, without a GPU: warps of 32 lanes that go in lockstep give their ended lanes new
+// rays in the middle of the others' traversals, and the hits are openmp's.
 #include "core/device/given_quads.h"
 #include "core/device/scene_buffers.h"
 #include "tests/kernels/refill_probe.h"
@@ -80,24 +80,16 @@ std::uint32_t Warp::shuffle(std::uint32_t value, std::uint32_t from)
 
 namespace {
 
-struct Kernel {
-    Structure structure;
-    Method method;
+struct Tree {
     Layout layout;
     WarpCounts (*trace_by_warps)(const WarpLaunch&);
 };
 
-class RefilledLanes : public ::testing::TestWithParam<Kernel> {
+class RefilledLanes : public ::testing::TestWithParam<Tree> {
 protected:
     [[nodiscard]] KernelId kernel(Task task) const
     {
-        const auto& [structure, method, layout, unused] = GetParam();
-        return {.structure = structure, .method = method, .layout = layout, .task = task};
-    }
-    [[nodiscard]] std::vector<Quad> quads(const RaySet& set) const
-    {
-        if (GetParam().structure == Structure::bvh) return given_quads_offset(set, cubes.scene.mesh);
-        return given_quads(set, packed);
+        return {.structure = Structure::bvh, .method = Method::single, .layout = GetParam().layout, .task = task};
     }
     void expect_openmps_hits(const SceneData& scene, const TraceJob& job, const std::vector<Quad>& rays = {}) const
     {
@@ -122,16 +114,14 @@ protected:
     [[nodiscard]] Visits visits(const RaySet& set, Patience patience) const
     {
         const TraceJob job = given_job(set.rays.size(), 1, false);
-        const std::vector<Quad> rays = quads(set);
+        const std::vector<Quad> rays = given_quads_offset(set, cubes.scene.mesh);
         std::vector<std::uint32_t> output(2 * GUARD_WORDS + HIT_WORDS * job.rays(), POISON);
         const LaunchParams params = launch_params(job, domain_of(packed), 4, TetParts{}.log2_bytes);
         return GetParam().trace_by_warps({packed, params, rays, output, 1, patience}).visits;
     }
 
     GivenScene cubes{40, false, 6};
-    PackedScene packed = GetParam().structure == Structure::bvh
-                             ? make_bvh_scene(cubes.scene.mesh, GetParam().layout)
-                             : pack(cubes.scene, GetParam().layout, TetOrder::chains);
+    PackedScene packed = make_bvh_scene(cubes.scene.mesh, GetParam().layout);
 
 private:
     static std::vector<Hit> hits_in(const std::vector<std::uint32_t>& output)
@@ -144,32 +134,25 @@ private:
     }
 };
 
-/// Of BVHs.
-class RefilledTraversals : public RefilledLanes {};
-
 } // namespace
 
 TEST_P(RefilledLanes, hit_what_openmp_hits_in_images_whose_tiles_are_cut_off)
 {
-    const GivenScene from_inside{40, true, 6};
-    for (TraceJob job : {cubes.job, from_inside.job}) {
-        if (job.start_tet != NO_TET && !packed.packed_of_mesh.empty())
-            job.start_tet = packed.packed_of_mesh[from_inside.start_tet];
-        job.width = 37;
-        job.height = 35;
-        expect_openmps_hits(job);
-    }
+    TraceJob job = cubes.job;
+    job.width = 37;
+    job.height = 35;
+    expect_openmps_hits(job);
 }
 
 TEST_P(RefilledLanes, hit_what_openmp_hits_with_given_rays_and_where_any_hit_will_do)
 {
-    for (const RayKind kind : {RayKind::random, RayKind::ao, RayKind::diffuse}) {
+    for (const RayKind kind : {RayKind::random, RayKind::ao}) {
         const RaySet set = make_rays(kind, cubes.source());
-        expect_openmps_hits(given_job(set.rays.size(), 10'000, set.any_hit), quads(set));
+        expect_openmps_hits(given_job(set.rays.size(), 1, set.any_hit), given_quads_offset(set, cubes.scene.mesh));
     }
 }
 
-TEST_P(RefilledTraversals, go_through_fewer_nodes_and_triangles_than_those_of_whole_warps)
+TEST_P(RefilledLanes, go_through_fewer_nodes_and_triangles_than_those_of_whole_warps)
 {
     for (const RayKind kind : {RayKind::diffuse, RayKind::random}) {
         const RaySet set = make_rays(kind, cubes.source());
@@ -180,21 +163,17 @@ TEST_P(RefilledTraversals, go_through_fewer_nodes_and_triangles_than_those_of_wh
     }
 }
 
-TEST_P(RefilledTraversals, that_put_triangles_off_find_room_on_a_full_stack)
+TEST_P(RefilledLanes, that_put_triangles_off_find_room_on_a_full_stack)
 {
     const FullStacks full(GetParam().layout);
     expect_openmps_hits({&full.mesh, &full.packed}, given_job(full.rays.rays.size(), 1, false),
                         given_quads_offset(full.rays, full.mesh));
 }
 
-const auto walks = ::testing::Values(Kernel{Structure::cdt, Method::project, Layout::half32, trace_by_warps_half32},
-                                     Kernel{Structure::cdt, Method::project, Layout::tet64, trace_by_warps_tet64});
-const auto traversals = ::testing::Values(Kernel{Structure::bvh, Method::single, Layout::bvh2, trace_by_warps_bvh2},
-                                          Kernel{Structure::bvh, Method::single, Layout::bvh4, trace_by_warps_bvh4},
-                                          Kernel{Structure::bvh, Method::single, Layout::cwbvh, trace_by_warps_cwbvh});
-const auto layout_name = [](const auto& test) { return std::string(name_of(test.param.layout)); };
-INSTANTIATE_TEST_SUITE_P(walks, RefilledLanes, walks, layout_name);
-INSTANTIATE_TEST_SUITE_P(traversals, RefilledLanes, traversals, layout_name);
-INSTANTIATE_TEST_SUITE_P(each, RefilledTraversals, traversals, layout_name);
+INSTANTIATE_TEST_SUITE_P(each, RefilledLanes,
+                         ::testing::Values(Tree{Layout::bvh2, trace_by_warps_bvh2},
+                                           Tree{Layout::bvh4, trace_by_warps_bvh4},
+                                           Tree{Layout::cwbvh, trace_by_warps_cwbvh}),
+                         [](const auto& test) { return std::string(name_of(test.param.layout)); });
 
 } // namespace tetrace::test
