@@ -137,8 +137,10 @@ void Budget::plan(std::vector<RowRun>& rows, const Entry& samples, std::size_t f
         // `reproduce` takes all that were asked for; `bench` may do with fewer.
         if (!view_by_view) entry.samples = std::min(entry.samples, static_cast<double>(min_samples));
         entry.views_per_sample = view_by_view ? 1 : entry.views;
+        entry.views_to_judge = entry.views;
+        if (const std::size_t view = first_view_with_rays(row); view < row.scene->views().size())
+            entry.view_rays = static_cast<double>(ray_count(row, view));
         entries_.push_back(entry);
-        views_to_judge_[row.scene] = entry.views;
     }
     for (Entry& entry : entries_)
         entry.is_reference = std::ranges::any_of(
@@ -152,13 +154,24 @@ void Budget::plan(std::vector<RowRun>& rows, const Entry& samples, std::size_t f
 }
 
 /// A sample of several passes has one more, which is launched by itself, and up to one more than it needs.
-double Budget::Entry::need_s() const
+double Budget::Entry::launches_s() const
 {
     if (samples == 0 || views == 0) return views_left * view_s;
     const double pass_s = view_s * views_per_sample, parts = views / views_per_sample;
     const double each_s = pass_s < sample_s ? std::min(sample_s + 2 * pass_s, (max_passes + 1) * pass_s) : pass_s;
     const unsigned latencies = latency_passes(static_cast<unsigned>(samples), passes_for(sample_s, pass_s));
     return views_left * view_s + runs * parts * (samples * each_s + (views_per_sample > 1 ? latencies * pass_s : 0));
+}
+
+bool Budget::Entry::is_beside(const Entry& other) const
+{
+    return row->scene == other.row->scene && row->key.rays == other.row->key.rays;
+}
+
+double Budget::need_s(const Entry& entry) const
+{
+    const double judging_s = judged_rays_ == 0 ? 0 : judged_s_ / judged_rays_ * entry.view_rays * entry.views_to_judge;
+    return entry.launches_s() + judging_s;
 }
 
 void Budget::traced(const RowRun& row, std::size_t views, double seconds)
@@ -177,17 +190,18 @@ void Budget::restored(const RowRun& row, std::size_t views)
     for (Entry& entry : entries_) {
         if (entry.row != &row) continue;
         entry.views_left = std::max(0.0, entry.views_left - static_cast<double>(views));
-        double& to_judge = views_to_judge_[row.scene];
-        to_judge = std::min(to_judge, std::max(0.0, static_cast<double>(row.scene->views().size() - views)));
+        entry.views_to_judge = std::min(entry.views_to_judge, static_cast<double>(row.scene->views().size() - views));
     }
 }
 
-void Budget::judged(const SceneWork& scene, double seconds)
+void Budget::judged(std::span<const RowRun* const> rows, double seconds)
 {
     judged_s_ += seconds;
-    judged_views_ += 1;
-    if (const auto found = views_to_judge_.find(&scene); found != views_to_judge_.end())
-        found->second = std::max(0.0, found->second - 1);
+    for (Entry& entry : entries_) {
+        if (std::ranges::find(rows, entry.row) == rows.end()) continue;
+        judged_rays_ += entry.view_rays;
+        entry.views_to_judge = std::max(0.0, entry.views_to_judge - 1);
+    }
 }
 
 void Budget::view_done()
@@ -205,35 +219,57 @@ void Budget::review()
 void Budget::review_timed()
 {
     const double affordable_s = left_s() + slack * seconds_;
+    while (needed_s() > affordable_s && skip_slowest_spare()) {
+    }
     if (!skip_slowest(affordable_s, false)) skip_slowest(affordable_s, true);
 }
 
 void Budget::fit(double affordable_s)
 {
-    while (needed_s(true) > affordable_s && skip_last_scene()) {
+    while (needed_s(true) > affordable_s && skip_last_group()) {
     }
     while (needed_s(true) > affordable_s && skip_slowest_reference()) {
+    }
+    while (needed_s() > affordable_s && (skip_slowest_spare() || skip_last_group())) {
     }
     skip_slowest(affordable_s, false);
 }
 
+bool Budget::is_spare(const Entry& entry) const
+{
+    const auto is_faster = [&](const Entry& other) {
+        if (!is_alive(*other.row) || !other.is_beside(entry) ||
+            other.row->key.kernel.structure != entry.row->key.kernel.structure)
+            return false;
+        return need_s(other) < need_s(entry) || (need_s(other) == need_s(entry) && &other < &entry);
+    };
+    return !entry.is_reference && std::ranges::any_of(entries_, is_faster);
+}
+
+/// Whether there was one.
+bool Budget::skip_slowest_spare()
+{
+    Entry* const slow = slowest([this](const Entry& entry) { return is_spare(entry); });
+    if (slow != nullptr) skip(*slow);
+    return slow != nullptr;
+}
+
 /// Of those with a row that is still in the run; never the only one. Whether there was one.
-bool Budget::skip_last_scene()
+bool Budget::skip_last_group()
 {
     const auto is_left = [](const Entry& entry) { return is_alive(*entry.row); };
     const auto first = std::ranges::find_if(entries_, is_left);
     const auto last = std::find_if(entries_.rbegin(), entries_.rend(), is_left);
-    if (first == entries_.end() || first->row->scene == last->row->scene) return false;
-    const SceneWork* const scene = last->row->scene;
+    if (first == entries_.end() || first->is_beside(*last)) return false;
     for (Entry& entry : entries_)
-        if (entry.row->scene == scene && is_alive(*entry.row)) skip(entry);
+        if (entry.is_beside(*last) && is_alive(*entry.row)) skip(entry);
     return true;
 }
 
 /// With the rows that are compared with it; never the only one. Whether there was one.
 bool Budget::skip_slowest_reference()
 {
-    Entry* const slow = slowest(true);
+    Entry* const slow = slowest([](const Entry& entry) { return entry.is_reference; });
     const auto is_other = [&](const Entry& entry) {
         return &entry != slow && entry.is_reference && is_alive(*entry.row);
     };
@@ -248,7 +284,7 @@ bool Budget::skip_slowest_reference()
 bool Budget::skip_slowest(double affordable_s, bool among_references)
 {
     while (needed_s() > affordable_s) {
-        Entry* const entry = slowest(among_references);
+        Entry* const entry = slowest([&](const Entry& row) { return row.is_reference == among_references; });
         if (entry == nullptr || alive() == 1) return false;
         skip(*entry);
     }
@@ -256,22 +292,20 @@ bool Budget::skip_slowest(double affordable_s, bool among_references)
 }
 
 /// Null if there is none.
-Budget::Entry* Budget::slowest(bool among_references)
+template <class Is>
+Budget::Entry* Budget::slowest(const Is& is)
 {
     Entry* found = nullptr;
     for (Entry& entry : entries_)
-        if (entry.is_reference == among_references && is_alive(*entry.row) &&
-            (found == nullptr || entry.need_s() > found->need_s()))
-            found = &entry;
+        if (is_alive(*entry.row) && is(entry) && (found == nullptr || need_s(entry) > need_s(*found))) found = &entry;
     return found;
 }
 
 void Budget::skip(Entry& entry)
 {
-    const double judging_before_s = judging_s();
-    entry.skipped_s = entry.need_s();
+    entry.skipped_s = need_s(entry);
     entry.row->session.reset();
-    skipped_s_ += *entry.skipped_s + judging_before_s - judging_s();
+    skipped_s_ += *entry.skipped_s;
     for (const Entry& other : entries_)
         if (other.skipped_s && !fails(*other.row, true)) // an answer that is known to be wrong is always reported
             other.row->outcome =
@@ -285,22 +319,11 @@ std::string Budget::sufficient() const
     return budget_text(1.25 * (now() - start_s_ + needed_s() + skipped_s_));
 }
 
-double Budget::judging_s() const
-{
-    if (judged_views_ == 0) return 0;
-    double views = 0;
-    for (const auto& [scene, left] : views_to_judge_)
-        if (std::ranges::any_of(entries_,
-                                [&](const Entry& entry) { return entry.row->scene == scene && is_alive(*entry.row); }))
-            views += left;
-    return judged_s_ / judged_views_ * views;
-}
-
 double Budget::needed_s(bool by_references_only) const
 {
-    double sum = judging_s();
+    double sum = 0;
     for (const Entry& entry : entries_)
-        if (is_alive(*entry.row) && (entry.is_reference || !by_references_only)) sum += entry.need_s();
+        if (is_alive(*entry.row) && (entry.is_reference || !by_references_only)) sum += need_s(entry);
     return sum;
 }
 

@@ -4,8 +4,8 @@
 #include "bench/statistics/statistics.h"
 
 #include <limits>
-#include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,12 +18,17 @@ inline constexpr std::uint32_t max_passes = 4096;
 inline constexpr const char* with_budget = "; with --budget ";
 
 /// Keeps a run within the seconds of --budget. A row needs a pass over its views to be verified, its first view once
-/// more, a warm-up pass, and min_samples samples with their passes of single launches (latency_passes()). Where the
-/// rows need more than is left, the slowest end as skipped; their text gives their cost and the --budget that runs
-/// them. The others get all the time that they need, whatever the order of the rows. If judging the rays and openmp's
-/// rows that others are compared with do not fit by themselves, whole scenes are skipped, the last one first, and of
-/// the first scene the slowest kernels of openmp with the rows that are compared with them. One row is left: of openmp,
+/// more, the judging of its rays, a warm-up pass, and min_samples samples with their passes of single launches
+/// (latency_passes()). Where the rows need more than is left, some end as skipped; their text gives their cost and the
+/// --budget that runs them. The others get all the time that they need, whatever the order of the rows.
+///
+/// A run is to compare tets with BVHs. So the slowest rows are skipped first, but of each scene and kind of rays the
+/// fastest row of either structure stays; then whole such groups, the last one first; of the first group the slower of
+/// the two. If openmp's rows that others are compared with do not fit by themselves, groups are skipped, too, and of
+/// the first one the slowest kernels of openmp with the rows that are compared with them. One row is left: of openmp,
 /// where others are compared with it.
+///
+/// What judging a ray costs is known once the rows of a first view were judged.
 ///
 /// Estimates are corrected as rows are traced. plan() holds the rows to the budget itself. Later reviews allow a
 /// quarter more, so that noise skips no row. A run takes at most 1.25 budgets plus the pass that is running at that
@@ -51,8 +56,8 @@ public:
     void restored(const RowRun& row, std::size_t views);
     /// Records that some views of a row took this many seconds.
     void traced(const RowRun& row, std::size_t views, double seconds);
-    /// Records that all rows of a view of the scene were judged; seconds: without the tracing.
-    void judged(const SceneWork& scene, double seconds);
+    /// Records that a view of these rows was judged; seconds: of all of them, without the tracing.
+    void judged(std::span<const RowRun* const> rows, double seconds);
 
     /// Skips rows until the others fit.
     void review();
@@ -65,22 +70,28 @@ private:
         bool is_reference = false; ///< others are compared with it
         double view_s = 0;         ///< expected
         double views_left = 0;     ///< to verify and to warm up
+        double views_to_judge = 0, view_rays = 0;
         double views = 0, samples = 0, sample_s = 0, runs = 1;
         double views_per_sample = 0;
         double seen_s = 0, seen_views = 0;
         std::optional<double> skipped_s = {}; ///< what it needed when it was skipped
 
-        [[nodiscard]] double need_s() const;
+        [[nodiscard]] double launches_s() const;
+        /// The same scene and kind of rays.
+        [[nodiscard]] bool is_beside(const Entry& other) const;
     };
 
     void plan(std::vector<RowRun>& rows, const Entry& samples, std::size_t first_view, bool view_by_view);
-    /// Of the views that have not been judged, of scenes with a row that is still in the run.
-    [[nodiscard]] double judging_s() const;
+    [[nodiscard]] double need_s(const Entry& entry) const;
     [[nodiscard]] double needed_s(bool by_references_only = false) const;
     [[nodiscard]] std::size_t alive() const;
-    [[nodiscard]] Entry* slowest(bool among_references);
+    /// Whether a faster row of its structure is beside it, so that a comparison does without it.
+    [[nodiscard]] bool is_spare(const Entry& entry) const;
+    template <class Is>
+    [[nodiscard]] Entry* slowest(const Is& is);
     void skip(Entry& entry);
-    bool skip_last_scene();
+    bool skip_slowest_spare();
+    bool skip_last_group();
     bool skip_slowest_reference();
     bool skip_slowest(double affordable_s, bool among_references);
     void fit(double affordable_s);
@@ -91,8 +102,7 @@ private:
     double start_s_;
     std::vector<Entry> entries_;
     double skipped_s_ = 0; ///< time that the skipped rows would have needed
-    double judged_s_ = 0, judged_views_ = 0;
-    std::map<const SceneWork*, double> views_to_judge_;
+    double judged_s_ = 0, judged_rays_ = 0;
 };
 
 /// For runs without a limit.

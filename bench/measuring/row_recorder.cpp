@@ -186,9 +186,10 @@ void RowRecorder::examine_all(std::size_t part, const std::string& stage)
         });
         budget.review();
     }
-    if (const auto of_scene = std::ranges::find_if(rows_, [](const RowRun* row) { return row->scene != nullptr; });
-        of_scene != rows_.end())
-        budget.judged(*(*of_scene)->scene, budget.now() - start_s - traced_s);
+    std::vector<const RowRun*> judged;
+    for (const std::size_t i : begun_)
+        judged.push_back(rows_[i]);
+    budget.judged(judged, budget.now() - start_s - traced_s);
 }
 
 /// The images of the part are added to the row's outcome at once: a row that turns out wrong is not timed.

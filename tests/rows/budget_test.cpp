@@ -302,6 +302,38 @@ TEST_F(BudgetOfRows, the_last_row_is_measured_although_it_does_not_fit)
     expect_skipped(other);
 }
 
+TEST_F(BudgetOfRows, keeps_of_each_structure_the_fastest_row_and_then_skips_the_last_scene)
+{
+    Options more = options_;
+    SceneWork second{loaded_cubes(), more};
+    rows_.reserve(8);
+    for (std::size_t row = 0; row < 8; ++row) {
+        add_row(Layout::tet80, std::vector<double>{2, 1, 4, 3}[row % 4]);
+        rows_[row].key.kernel.structure = row % 4 < 2 ? Structure::cdt : Structure::bvh;
+        if (row >= 4) rows_[row].scene = &second;
+    }
+    Budget limit =
+        budget_of((1 + 3) * views_needed + 20 * views_estimated); // of the first scene, once all are estimated
+    limit.plan(rows_, 10);
+    for (const std::size_t row : {1, 3})
+        EXPECT_EQ(status_of(rows_[row]), Status::ok) << reason_of(rows_[row]);
+    for (const std::size_t row : {0, 2, 4, 5, 6, 7})
+        expect_skipped(row);
+}
+
+TEST_F(BudgetOfRows, that_judging_takes_too_long_skips_as_many_rows_as_it_takes_too_long_for)
+{
+    rows_.reserve(4);
+    for (std::size_t row = 0; row < 4; ++row)
+        add_row(Layout::tet80, 0.001);
+    Budget limit = budget_of(60);
+    limit.plan(rows_, 10);
+    now_s_ += 40;
+    limit.judged(std::vector<const RowRun*>{&rows_[0], &rows_[1], &rows_[2], &rows_[3]}, 40);
+    limit.review(); // 10 s more for each row; 20 s are left, and a quarter of 60
+    EXPECT_EQ(std::ranges::count(rows_, Status::ok, [](const RowRun& row) { return status_of(row); }), 3);
+}
+
 TEST_F(BudgetOfRows, that_judging_takes_too_long_skips_whole_scenes_from_the_last_on)
 {
     Options more = options_;
@@ -313,12 +345,13 @@ TEST_F(BudgetOfRows, that_judging_takes_too_long_skips_whole_scenes_from_the_las
     rows_[2].scene = &third;
     Budget limit = budget_of(100);
     limit.plan(rows_, 10);
-    limit.judged(scene_, 30); // so 150 s more for the other five views
+    const std::vector<const RowRun*> first = {&rows_[0]};
+    limit.judged(first, 30); // so 150 s more for the other five views
     limit.review();
     EXPECT_EQ(status_of(rows_[0]), Status::ok) << reason_of(rows_[0]);
     EXPECT_EQ(status_of(rows_[1]), Status::ok) << reason_of(rows_[1]);
     expect_skipped(2);
-    limit.judged(scene_, 1000);
+    limit.judged(first, 1000);
     limit.review();
     expect_skipped(1);
     EXPECT_EQ(status_of(rows_[0]), Status::ok) << "the last scene stays";
