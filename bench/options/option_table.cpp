@@ -352,11 +352,12 @@ std::vector<OptionRow> judging_options()
         {"Measuring", "--budget", "TIME",
          "Wall-clock time for verifying and timing all rows; of 'check' for verifying them. Loading scenes, opening "
          "devices and exit searches do not count. If not all samples fit, 'bench' takes fewer, but at least 5 (or "
-         "--samples, if less), since fewer give no interval. The slowest rows are skipped until the others fit, or "
-         "whole scenes, the last one first; 'reproduce' shares the time evenly by the scenes that are left. The "
-         "result states the budget that the skipped rows need. With --repeat, each repetition has it. One row is "
-         "always measured, however small TIME is; "
-         "otherwise a run exceeds the budget by at most a quarter. --benchmark_repetitions lifts the limit. "
+         "--samples, if less), since fewer give no interval. The slowest rows are skipped until the others fit; of "
+         "each scene the fastest row of tets and that of BVHs stay, until whole scenes are skipped, the last one "
+         "first. "
+         "'reproduce' shares the time evenly by the scenes that are left. The result states the budget that the "
+         "skipped rows need. With --repeat, each repetition has it. One row is always measured, however small TIME "
+         "is; otherwise a run exceeds the budget by at most a quarter. --benchmark_repetitions lifts the limit. "
          "Default: 4m; of 'check' and 'reproduce' no limit, but of rivals 10m, of ladder 5m.",
          sharing, false, set_seconds("--budget", &Options::budget_s),
          usual_for(bit(Verb::bench) | bit(Verb::reproduce), "time for verifying and timing: 30s, 10m")},
