@@ -316,7 +316,7 @@ void Budget::skip(Entry& entry)
 /// A budget that fits all rows, including the skipped ones: a quarter more than their expected time.
 std::string Budget::sufficient() const
 {
-    return budget_text(1.25 * (now() - start_s_ + needed_s() + skipped_s_));
+    return budget_text(1.25 * (spent_s() + needed_s() + skipped_s_));
 }
 
 double Budget::needed_s(bool by_references_only) const

@@ -40,7 +40,8 @@ public:
 
     [[nodiscard]] const Clock& clock() const { return clock_; }
     [[nodiscard]] double now() const { return clock_(); }
-    [[nodiscard]] double left_s() const { return seconds_ - (now() - start_s_); }
+    [[nodiscard]] double spent_s() const { return now() - start_s_; }
+    [[nodiscard]] double left_s() const { return seconds_ - spent_s(); }
 
     /// Restarts the clock, estimates the rows by tracing a part of their rays, and skips those that do not fit. Rows
     /// that cannot be traced end with their reason. rows: opened; they keep their addresses while the budget is used.

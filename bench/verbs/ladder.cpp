@@ -19,7 +19,8 @@ namespace tetrace {
 namespace {
 
 constexpr unsigned rounds_of_lone_rays = 10; // min_views: fewer give no interval
-constexpr double growth = 4;                 // of a scene's time, most of which is making and packing its tets
+constexpr double growth_of_making = 4;       // as there are more tets
+constexpr double growth_of_verifying = 2;    // a ray crosses 1.6 times as many tets
 constexpr double share_of_samples = 0.7;     // of a scene's budget; rays alone have the rest
 
 /// Cubes along an axis for which half32 takes 1, 4, 16, 64, 256, 1024 and 4096 MB.
@@ -43,17 +44,25 @@ std::uint64_t tets_of(const std::string& scene)
     return n ? lattice_tets(*n) : 0;
 }
 
-/// Why a scene is not measured; empty if it is. last_s: what the scene before it took until its rows were verified.
-std::string why_left_out(const std::string& scene, const std::vector<RowKey>& rows, double last_s, double left_s)
+/// Seconds of a scene until its rows are verified.
+struct Preparation {
+    double making_s = 0; ///< and packing and opening
+    double verifying_s = 0;
+
+    [[nodiscard]] double next_s() const { return growth_of_making * making_s + growth_of_verifying * verifying_s; }
+};
+
+/// Why a scene is not measured; empty if it is. expected_s: until its rows are verified.
+std::string why_left_out(const std::string& scene, const std::vector<RowKey>& rows, double expected_s, double left_s)
 {
     const std::uint64_t needed = host_bytes(tets_of(scene), rows), there = available_memory_bytes();
     if (needed > there)
         return fmt::format("{} is left out: making and packing it takes about {}, and {} of this machine's memory are "
                            "available",
                            scene, size_text(needed), size_text(there));
-    if (growth * last_s > left_s)
+    if (expected_s > left_s)
         return fmt::format("{} is left out: making and verifying it takes about {}, and --budget leaves {}", scene,
-                           seconds_text(growth * last_s), seconds_text(std::max(0.0, left_s)));
+                           seconds_text(expected_s), seconds_text(std::max(0.0, left_s)));
     return {};
 }
 
@@ -100,9 +109,9 @@ void append(BenchResult& to, const SceneRows& run, Measurement measured, const O
     to.measurement = std::move(measured);
 }
 
-/// budget_s: of this scene. Returns seconds until its rows were verified.
-double run_scene(Ladder& ladder, const std::vector<RowKey>& rows, const Options& options, const Clock& clock,
-                 double budget_s)
+/// budget_s: of this scene.
+Preparation run_scene(Ladder& ladder, const std::vector<RowKey>& rows, const Options& options, const Clock& clock,
+                      double budget_s)
 {
     const Stopwatch stopwatch;
     MachineWatch watch = watch_of(host_pulse(resolved_threads(options)), nullptr, clock);
@@ -110,11 +119,11 @@ double run_scene(Ladder& ladder, const std::vector<RowKey>& rows, const Options&
     Budget budget(share_of_samples * budget_s);
     const Recording shared{nullptr, nullptr, &watch, &budget};
     SceneRows run = open_and_verify(rows, options, {}, shared);
-    const double verified_s = stopwatch.seconds();
+    const Preparation preparation{stopwatch.seconds() - budget.spent_s(), budget.spent_s()};
     Measurement measured = measure_rows(run.rows, options, {}, shared);
     std::ranges::move(measure_lone_rays(run.rows, whole), std::back_inserter(ladder.costs));
     append(ladder.result, run, std::move(measured), options);
-    return verified_s;
+    return preparation;
 }
 
 std::vector<RowKey> rows_of_scene(const std::vector<RowKey>& rows, const std::string& scene)
@@ -142,20 +151,21 @@ Ladder run_ladder(const Options& options, const std::vector<RowKey>& rows)
 {
     Ladder ladder;
     const Clock clock = host_clock();
-    double last_s = 0;
+    Preparation last;
     for (std::size_t i = 0; i < options.scenes.size() && !is_interrupted(); ++i) {
         Options of_scene = options;
         of_scene.scenes = {options.scenes[i]};
         const auto of_rows = rows_of_scene(rows, options.scenes[i]);
         if (of_rows.empty()) continue; // --filter
         const double left_s = options.budget_s - clock();
-        const std::string reason = i == 0 ? std::string() : why_left_out(options.scenes[i], of_rows, last_s, left_s);
+        const std::string reason =
+            i == 0 ? std::string() : why_left_out(options.scenes[i], of_rows, last.next_s(), left_s);
         if (!reason.empty()) {
             say(reason);
             ladder.result.missing_scenes.push_back(reason);
             continue;
         }
-        last_s = run_scene(ladder, of_rows, of_scene, clock, left_s / static_cast<double>(options.scenes.size() - i));
+        last = run_scene(ladder, of_rows, of_scene, clock, left_s / static_cast<double>(options.scenes.size() - i));
     }
     complete(ladder.result, options);
     return ladder;

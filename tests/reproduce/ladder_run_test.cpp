@@ -22,6 +22,7 @@ TEST_F(LadderRun, every_row_has_its_size_its_steps_and_both_costs_and_they_are_p
         EXPECT_EQ(row.at("status"), "ok") << row;
         EXPECT_GT(row.at("full_ns").at("value"), 0) << row;
         EXPECT_GT(row.at("steps_per_ray"), 1) << row;
+        EXPECT_GE(row.at("rounds"), 1) << row;
         EXPECT_EQ(row.at("step"), contains(row.at("row").get<std::string>(), "bvh") ? "node" : "tet");
     }
     EXPECT_GT(rows.back().at("megabytes"), 0);

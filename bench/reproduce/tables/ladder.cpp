@@ -40,13 +40,14 @@ struct Rung {
     const RowRecord* row;
     double rays_steps; ///< steps per ray
     std::optional<Estimate> full_ns, alone_ns;
+    std::size_t rounds; ///< of rays alone
 };
 
 std::vector<Rung> rungs_of(const std::vector<RowRecord>& rows, const std::vector<StepCosts>& costs)
 {
     std::vector<Rung> rungs;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        Rung& rung = rungs.emplace_back(Rung{&rows[i], 0, {}, {}});
+        Rung& rung = rungs.emplace_back(Rung{&rows[i], 0, {}, {}, costs[i].alone_s.size()});
         if (!figures_of(rows[i])) continue;
         rung.rays_steps = costs[i].steps / static_cast<double>(traced(rows[i])->totals.rays);
         rung.full_ns = ns_of(rows[i].samples_s, costs[i].steps);
@@ -72,6 +73,7 @@ std::vector<PaperCell> cells_of_rung(const Rung& rung)
             std::string(counts_nodes(row) ? "node" : "tet"),
             rung.rays_steps > 0 ? exact_cell(rung.rays_steps) : PaperCell(),
             estimate_cell(rung.alone_ns),
+            exact_cell(static_cast<double>(rung.rounds)),
             estimate_cell(rung.full_ns),
             has_both ? exact_cell(rung.alone_ns->value / rung.full_ns->value) : PaperCell(),
             reason.empty() ? status : status + ": " + reason};
@@ -135,6 +137,7 @@ PaperTable ladder_table(const std::vector<RowRecord>& rows, const std::vector<St
                       {"step", "step"},
                       {"steps_per_ray", "per ray", "", 1},
                       {"alone_ns", "a ray alone", "ns/step", 1},
+                      {"rounds", "rounds", "", 0},
                       {"full_ns", "full device", "ns/step", 3},
                       {"in_flight", "alone / full", "", 1},
                       {"status", "status"}},
