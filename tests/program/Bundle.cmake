@@ -1,5 +1,6 @@
 # The bundle's run-all with a false program in place of tetrace, then the bundle itself (target `bundle`).
 foreach(claim steps_that_end_well_give_0 the_time_of_all_steps_shortens_later_ones_and_then_skips_them a_hang_and_a_failure_lose_no_other_step known_defects_of_compilers_are_no_failure
+    results_are_added_under_their_commit_with_a_page
     what_is_packed_is_unpacked_for_the_steps each_gpu_has_its_share_of_the_tables
     a_hanging_look_for_devices_costs_no_picture_of_other_apis the_summary_is_json_too
     an_interrupt_ends_the_step_and_keeps_the_summary refuses_what_it_does_not_know)

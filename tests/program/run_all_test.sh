@@ -59,7 +59,20 @@ the_time_of_all_steps_shortens_later_ones_and_then_skips_them)
     summary_has '^1 steps failed, [0-9]+ skipped, 1[0-9] s in all'
     tetrace_is 'echo "it ran: $*"'
     run_all 0 "$out" --quick --limit-all 60
-    grep -Eq ' bench .*--budget [0-9]+s' "$out/bench.txt" || fail "its budget does not follow from its limit" ;;
+    budget=$(sed -n 's/.* bench .*--budget \([0-9]*\)s .*/\1/p' "$out/bench.txt")
+    [ "$budget" -ge 1 ] && [ "$budget" -le 37 ] || fail "budget '$budget', not 6/10 of at most 60 s" ;;
+results_are_added_under_their_commit_with_a_page)
+    tetrace_is 'case $1 in report) shift; while [ "$1" != --out ]; do shift; done; echo page >"$2" ;; devices) exit 0 ;; esac
+        while [ $# -gt 0 ] && [ "$1" != --out ]; do shift; done
+        case ${2-} in *.json) ;; *) exit 0 ;; esac
+        echo "{\"date\":\"2026-11-28T06:00:00Z\",\"commit\":\"0123abc\"}" >"$2"'
+    run_all 0 "$out" --quick
+    "$source/../scripts/add-results" "$out" "$folder/results" "$folder/a bundle/bin/tetrace" || fail "exit code $?"
+    for name in bench.json check.json summary.txt; do
+        [ -s "$folder/results/2026-11-28-0123abc-$name" ] || fail "no $name: $(ls "$folder/results")"
+    done
+    grep -q page "$folder/results/report.html" || fail "no page"
+    ! "$source/../scripts/add-results" "$folder" "$folder/results" 2>/dev/null || fail "a folder without a run is taken" ;;
 known_defects_of_compilers_are_no_failure)
     tetrace_is 'case "$*" in *--defects*) exit 1 ;; esac'
     run_all 0 "$out" --quick
