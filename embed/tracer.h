@@ -16,7 +16,7 @@ namespace tetrace {
 /// A scene, packed in a layout, on a device.
 class Tracer {
 public:
-    /// Throws Error{usage} for a backend, device or layout that there is not, naming those that there are; else as
+    /// Throws Error{usage} for an unknown backend, device or layout, naming the known ones; else as
     /// pack(), build_bvh() and Backend::open() do.
     Tracer(std::shared_ptr<const LoadedScene> scene, std::string_view backend, std::uint32_t device,
            std::string_view layout);

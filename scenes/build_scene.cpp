@@ -189,7 +189,7 @@ public:
     explicit PreparedMeshes(fs::path out) : out_(std::move(out)) {}
 
     [[nodiscard]] fs::path file(double tolerance) const { return fmt::format("{}.mesh{:g}", out_.string(), tolerance); }
-    /// The builder speaks of a mesh only where it prepares it.
+    /// The builder speaks of a mesh only if it prepares it.
     void add_notes(double tolerance, Report& report)
     {
         const auto known = notes_.find(tolerance);

@@ -19,7 +19,7 @@ namespace tetrace {
 struct TetsAttempt {
     std::string switches;
     std::uint32_t order = 0; ///< in which TetGen gets the mesh
-    double weld = 0;         ///< tolerance of the repair; 0: only where it needs one
+    double weld = 0;         ///< tolerance of the repair; 0: only if it needs one
 
     friend bool operator==(const TetsAttempt&, const TetsAttempt&) = default;
 };
@@ -28,7 +28,7 @@ struct TetsAttempt {
 /// TetGen crashes on some meshes in one order of vertices and not in another, most often where it removes Steiner
 /// points (hence Y0/2/2); on some with pY and not with pq5Y; and refuses some with pq5Y and not with facets that stay
 /// apart (M) and a finer tolerance (T), or without Y and q. Where layers are too near to each other for it, a repair
-/// merges them. At last CGAL makes the tets, where the builder has a CGAL that does. Figures: results/repair.md.
+/// merges them. At last CGAL makes the tets, if the builder has a CGAL that does. Figures: results/repair.md.
 [[nodiscard]] std::vector<TetsAttempt> fallback_attempts(const BuildOptions& options);
 
 /// A build that left a scene.

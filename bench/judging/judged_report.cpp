@@ -58,7 +58,7 @@ Table verdict_table(const JudgedRun& run)
     return table;
 }
 
-/// At most so many triangles that are exactly as near are listed.
+/// How many triangles that are exactly as near are listed at most.
 constexpr std::size_t max_listed = 8;
 
 std::string nearest_text(const FaultyRay& fault)

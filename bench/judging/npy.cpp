@@ -15,7 +15,7 @@
 
 namespace tetrace {
 
-static_assert(std::endian::native == std::endian::little, "numbers are copied to and from files as they are");
+static_assert(std::endian::native == std::endian::little, "numbers are copied to and from files unchanged");
 
 namespace {
 

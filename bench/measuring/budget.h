@@ -19,7 +19,7 @@ inline constexpr const char* with_budget = "; with --budget ";
 
 /// Keeps a run within the seconds of --budget. A row needs a pass over its views to be verified, its first view once
 /// more, the judging of its rays, a warm-up pass, and min_samples samples with their passes of single launches
-/// (latency_passes()). Where the rows need more than is left, some end as skipped; their text gives their cost and the
+/// (latency_passes()). If the rows need more than is left, some end as skipped; their text gives their cost and the
 /// --budget that runs them. The others get all the time that they need, whatever the order of the rows.
 ///
 /// A run is to compare tets with BVHs. So the slowest rows are skipped first, but of each scene and kind of rays the
@@ -45,7 +45,7 @@ public:
 
     /// Restarts the clock, estimates the rows by tracing a part of their rays, and skips those that do not fit. Rows
     /// that cannot be traced end with their reason. rows: opened; they keep their addresses while the budget is used.
-    /// samples: the number asked for, in each of so many runs; 0: rows are only verified. sample_s: that each lasts at
+    /// samples: the number asked for, in each of the runs; 0: rows are only verified. sample_s: that each lasts at
     /// least. Says so if the last row does not fit.
     void plan(std::vector<RowRun>& rows, unsigned samples, double sample_s = 0, unsigned runs = 1);
     /// The same for rows that are verified and timed view by view, in samples of a view, from the view `first` on.
@@ -53,7 +53,7 @@ public:
     /// Records that a view of plan_views() has been timed, and skips rows until the others fit.
     void view_done();
 
-    /// Records that so many views of a row, and their judging, need not be done: a journal has them.
+    /// Records that this number of views of a row need not be traced and judged: a journal has them.
     void restored(const RowRun& row, std::size_t views);
     /// Records that some views of a row took this many seconds.
     void traced(const RowRun& row, std::size_t views, double seconds);

@@ -51,7 +51,7 @@ std::vector<TraceJob> ViewRecorder::prepare(RowRun& row, std::size_t view)
     return prepare_batch(row, {view});
 }
 
-/// The first view: where a session has given rays, those of the current view would be lost.
+/// The first view: if a session has given rays, those of the current view would be lost.
 std::optional<TraceJob> ViewRecorder::pulse_job(RowRun& row)
 {
     if (traits_of(row.key.kernel.task).takes_rays) return std::nullopt;

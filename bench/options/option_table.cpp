@@ -309,7 +309,8 @@ std::vector<OptionRow> driver_options()
     const unsigned with_drivers = reproducing | bit(Verb::devices);
     return {
         {"Drivers", "--isolate", "KIND",
-         "Where the drivers of opencl, vulkan and cuda run: 'device', a separate process for each device, so that a "
+         "The process in which the drivers of opencl, vulkan and cuda run: 'device', a separate process for each "
+         "device, so that a "
          "driver that crashes or hangs ends only its row; 'none', tetrace's process, for debuggers. Default: device.",
          with_drivers, false, set_choice<Isolation>("--isolate", &Options::isolation)},
         {"Drivers", "--driver-limit", "TIME",

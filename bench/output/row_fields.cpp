@@ -285,7 +285,7 @@ std::vector<RowField> identity_fields()
          recorded("line", optional, "of our BVHs: why it is not the heuristic's best tree")},
         {"", "narrower_packets", narrower_packets,
          recorded("count", optional,
-                  "of Embree's packets: rays of the packets that it splits them into, where the processor has no wider "
+                  "of Embree's packets: rays of the packets that it splits them into, if the processor has no wider "
                   "ones")},
         {"", "self_test",
          both([](const RowRecord& row) { return row.self_test ? self_test_json(*row.self_test) : json(); },

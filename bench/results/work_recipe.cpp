@@ -36,7 +36,7 @@ std::string kind_of(const ResultScene& scene)
     return scene.tets_kind.empty() ? "cdt" : scene.tets_kind;
 }
 
-/// The options that decide tets, where they differ.
+/// The options that decide tets, if they differ.
 void add_build(WorkRecipe& recipe, const ResultScene& a, const ResultScene& b)
 {
     if (kind_of(a) != kind_of(b)) add(recipe, "--tets", kind_of(a));

@@ -22,7 +22,7 @@ void something_to_keep();
 /// Whether the work has been asked to stop. Long work looks between its steps.
 [[nodiscard]] bool is_interrupted();
 
-/// As a signal would: where a child process has taken it, and in tests.
+/// As a signal would: if a child process has taken it, and in tests.
 void interrupt();
 /// Forgets an interrupt.
 void forget_interrupt();

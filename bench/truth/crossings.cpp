@@ -57,8 +57,8 @@ double least_clearance(std::span<const Clearance> planes, double depth)
     return least;
 }
 
-/// How deep the ray is inside all planes, where it is deepest in a part of it. The least of linear functions is largest
-/// at an end of the part, or where two of them are equal.
+/// How deep the ray is inside all planes, at the deepest point of a part of it. The least of linear functions is
+/// largest at an end of the part, or where two of them are equal.
 double deepest_in(std::span<const Clearance> planes, Stretch part)
 {
     double deepest = std::max(least_clearance(planes, part.begin), least_clearance(planes, part.end));
@@ -223,7 +223,7 @@ const char* CrossedRay::flaw_of_step(std::uint32_t number, std::uint32_t next, s
     return flaw;
 }
 
-/// sense: 1 to enter the domain, -1 to leave it. Where the ray is far deeper in the tet than the bound, it cannot do so
+/// sense: 1 to enter the domain, -1 to leave it. If the ray is far deeper in the tet than the bound, it cannot do so
 /// against a face's sense.
 Ways CrossedRay::boundary_of(std::uint32_t number, std::uint32_t place, double sense)
 {

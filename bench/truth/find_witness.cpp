@@ -355,7 +355,7 @@ private:
         return met;
     }
 
-    // Moves across at one depth, early or late, where the gaps overlap. Returns a witness where the move meets the
+    // Moves across at one depth, early or late, where the gaps overlap. Returns a witness if the move meets the
     // answer's triangle: one that is seen edge-on is met only from its side.
     [[nodiscard]] Witness move(const std::vector<Node>& nodes, std::size_t from, Node& to,
                                const std::vector<std::vector<Gap>>& gaps, int& moves_left) const

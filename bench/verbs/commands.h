@@ -52,7 +52,7 @@ void require_devices(const std::vector<std::string>& backends);
 
 /// From here on an interrupt says that the journal has what is finished, and the command line that goes on with it.
 void say_how_to_go_on(const Options& options);
-/// Says so, where it was asked for, at the end of a run that was interrupted; the exit code.
+/// Says so, if it was asked for, at the end of a run that was interrupted; the exit code.
 [[nodiscard]] int end_interrupted();
 
 /// Throws Error{missing} naming the first required backend of which no row is selected, so that it would pass

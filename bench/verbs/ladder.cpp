@@ -26,7 +26,7 @@ constexpr double share_of_samples = 0.7;     // of a scene's budget; rays alone 
 /// Cubes along an axis for which half32 takes 1, 4, 16, 64, 256, 1024 and 4096 MB.
 constexpr int ladder_lattices[] = {11, 17, 27, 44, 69, 110, 174};
 
-/// Bytes of host memory that a scene of so many tets takes at its most, by /usr/bin/time for lattice:69: its own and
+/// Bytes of host memory that a scene of that many tets takes at its most, by /usr/bin/time for lattice:69: its own and
 /// its packed forms, and once more what drivers that compute on the host's memory copy.
 std::uint64_t host_bytes(std::uint64_t tets, const std::vector<RowKey>& rows)
 {

@@ -40,7 +40,7 @@ struct BuilderOptions {
     std::string switches = "pq5Y"; ///< TetGen's, or cgal_switches
     std::uint32_t order = 0;       ///< in which TetGen gets the mesh (run_tetgen)
     bool repair = false;           ///< cut triangles that cross
-    double weld = 0;               ///< repair: with at least this tolerance, domain units; 0: only where it must be
+    double weld = 0;               ///< repair: with at least this tolerance, domain units; 0: only if it must be
     TetsKind tets = TetsKind::cdt;
     int effort = default_effort; ///< of the optimiser, for TetsKind::rays
     bool as_read = false;        ///< nothing is built: the triangles are written as the file has them (raw_mesh.h)

@@ -293,7 +293,7 @@ private:
         }
         return false;
     }
-    // Puts positive tets in the place of these, where there are some: their outer sides stay, and vertices inside that
+    // Puts positive tets in the place of these, if there are some: their outer sides stay, and vertices inside that
     // may not move.
     bool refill(const std::vector<std::uint32_t>& cavity)
     {

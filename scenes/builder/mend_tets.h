@@ -26,7 +26,7 @@ struct Rounding {
 };
 
 /// Mends flat and inverted tets. First it tries floats near each of their vertices that may move, nearest first, and
-/// keeps one that leaves fewer bad tets around it. Where that does not help, it puts the vertex onto a neighbour, and
+/// keeps one that leaves fewer bad tets around it. If that does not help, it puts the vertex onto a neighbour, and
 /// the tets between them vanish: one on an input triangle goes along it, one on an edge of input triangles along that
 /// edge, and one whose freedom lacks an axis stays. Else it puts other tets in the place of those around the vertex or
 /// the tet. Deterministic; vertices without freedom never move or go. mesh: half-faces and faces are sound. Vertices

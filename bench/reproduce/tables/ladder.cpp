@@ -35,7 +35,7 @@ std::optional<Estimate> ns_of(std::vector<double> seconds, double steps)
     return std::min(ns.value, ns.low.value_or(ns.value)) > 0 ? std::optional(ns) : std::nullopt;
 }
 
-/// A row with its two costs, where it has them.
+/// A row with its two costs, if it has them.
 struct Rung {
     const RowRecord* row;
     double rays_steps; ///< steps per ray

@@ -66,7 +66,7 @@ float rounded(double number)
     return snap_to_grid(static_cast<float>(number));
 }
 
-// Of the exact value, which is computed only where the ends of the number's interval are rounded apart.
+// Of the exact value, which is computed only if the ends of the number's interval are rounded apart.
 float rounded(const Number& number)
 {
     const auto [low, high] = CGAL::to_interval(number);
