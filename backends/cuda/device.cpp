@@ -60,7 +60,7 @@ void describe_driver(Device& device, const Driver& driver)
     device.kind = DeviceKind::gpu;
     if (!module.empty()) device.driver += ", NVIDIA driver " + module;
     device.implementation =
-        module.empty() ? "nvidia-cuda-" + version_text(version) : implementation_name("nvidia", module);
+        module.empty() ? "nvidia-cuda-" + version_text(version) : implementation_name("nvidia-cuda", module);
     device.timer_period_s = event_period_s;
 }
 

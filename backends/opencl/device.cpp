@@ -157,7 +157,7 @@ FoundDevice described(const cl::Platform& platform, const cl::Device& handle)
 std::string short_name(std::string_view platform_name)
 {
     if (platform_name == "Portable Computing Language") return "pocl";
-    if (platform_name.starts_with("NVIDIA")) return "nvidia";
+    if (platform_name.starts_with("NVIDIA")) return "nvidia-opencl";
     return platform_name.empty() ? "opencl" : std::string(platform_name);
 }
 

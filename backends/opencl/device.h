@@ -24,7 +24,8 @@ struct FoundDevice {
 [[nodiscard]] std::vector<FoundDevice> find_devices();
 
 /// An implementation's name and version in short: "pocl-3.1", "oclgrind-21.10"; of NVIDIA's drivers the branch,
-/// "nvidia-580". Names that are not known are the platform's in lower case; a version that is not found is left out.
+/// "nvidia-opencl-580". Names that are not known are the platform's in lower case; a version that is not found is left
+/// out.
 [[nodiscard]] std::string implementation_of(std::string_view platform_name, std::string_view driver_version,
                                             std::string_view platform_version);
 

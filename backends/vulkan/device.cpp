@@ -182,7 +182,8 @@ bool is_listed(const std::vector<FoundDevice>& found, const FoundDevice& device)
 
 std::string implementation_of(std::string_view driver_name, std::string_view driver_info)
 {
-    return implementation_name(driver_name == "llvmpipe" ? "lavapipe" : driver_name, driver_info);
+    if (driver_name == "llvmpipe") return implementation_name("lavapipe", driver_info);
+    return implementation_name(driver_name == "NVIDIA" ? "nvidia-vulkan" : driver_name, driver_info);
 }
 
 std::uint32_t max_steps_of(std::string_view implementation)

@@ -66,8 +66,8 @@ inline constexpr std::uint32_t min_storage_buffers = storage_buffers_needed(5, f
 [[nodiscard]] std::uint32_t max_steps_of(std::string_view implementation);
 
 /// A driver's name and version in short, from VkPhysicalDeviceDriverProperties: "lavapipe-22.3", "radv-22.3"; of
-/// NVIDIA's drivers the branch, "nvidia-580". Names that are not known are in lower case, a version that is not found
-/// is left out.
+/// NVIDIA's drivers the branch, "nvidia-vulkan-580". Names that are not known are in lower case, a version that is not
+/// found is left out.
 [[nodiscard]] std::string implementation_of(std::string_view driver_name, std::string_view driver_info);
 
 } // namespace tetrace::vulkan

@@ -109,7 +109,7 @@ std::string implementation_name(std::string_view driver, std::string_view versio
 {
     std::string name = dashed(driver);
     if (name.empty()) name = "unknown";
-    const std::string numbers = version_in(version, name == "nvidia" ? 1 : 2);
+    const std::string numbers = version_in(version, name.starts_with("nvidia") ? 1 : 2);
     if (!numbers.empty()) name.append("-").append(numbers);
     return name;
 }

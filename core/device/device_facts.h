@@ -31,8 +31,9 @@ namespace tetrace {
 [[nodiscard]] bool is_same_device(const Device& a, const Device& b);
 
 /// Device::implementation: a driver's name in lower case, its words joined by dashes, and the first two numbers of its
-/// version; for NVIDIA's driver only the first. "Mesa 22.3.6 (LLVM 15.0.6)" is version 22.3; a text without digits
-/// gives no version. A name without letters and digits is "unknown".
+/// version; for NVIDIA's driver only the first. Its three APIs have different compilers, so they have different names.
+/// "Mesa 22.3.6 (LLVM 15.0.6)" is version 22.3; a text without digits gives no version. A name without letters and
+/// digits is "unknown".
 [[nodiscard]] std::string implementation_name(std::string_view driver, std::string_view version);
 
 /// The device with texts that any terminal and any result can have, whatever its driver calls itself.

@@ -213,7 +213,7 @@ TEST(DeviceFacts, name_an_implementation_by_driver_and_version)
     EXPECT_EQ(implementation_name("Some (odd) Driver ", "v7.9.1-3 (LLVM 15)"), "some-odd-driver-7.9");
     EXPECT_EQ(implementation_name("driver", "7."), "driver-7");
     EXPECT_EQ(implementation_name("driver", "beta"), "driver");
-    EXPECT_EQ(implementation_name("NVIDIA", "580.65.06"), "nvidia-580");
+    EXPECT_EQ(implementation_name("nvidia-cuda", "580.65.06"), "nvidia-cuda-580");
     EXPECT_EQ(implementation_name("", "1.2"), "unknown-1.2");
 }
 

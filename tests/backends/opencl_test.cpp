@@ -124,7 +124,7 @@ TEST(OpenclImplementation, is_read_from_whatever_drivers_say)
               "pocl-3.1");
     EXPECT_EQ(implementation_of("Portable Computing Language", "6.0+debian", "OpenCL 3.0 PoCL 6.0+debian"), "pocl-6.0");
     EXPECT_EQ(implementation_of("Oclgrind", "Oclgrind 21.10", "OpenCL 1.2 (Oclgrind 21.10)"), "oclgrind-21.10");
-    EXPECT_EQ(implementation_of("NVIDIA CUDA", "580.82.07", "OpenCL 3.0 CUDA 13.0.97"), "nvidia-580");
+    EXPECT_EQ(implementation_of("NVIDIA CUDA", "580.82.07", "OpenCL 3.0 CUDA 13.0.97"), "nvidia-opencl-580");
     EXPECT_EQ(implementation_of("rusticl", "25.0.7-2", "OpenCL 3.0 "), "rusticl-25.0");
     EXPECT_EQ(implementation_of("Intel(R) OpenCL Graphics", "23.05.25593.11", "OpenCL 3.0 "),
               "intel-r-opencl-graphics-23.05");
@@ -133,7 +133,7 @@ TEST(OpenclImplementation, is_read_from_whatever_drivers_say)
     EXPECT_EQ(implementation_of("Some Driver", "beta", "OpenCL 1.2 Some 7.9.1"), "some-driver-7.9");
     EXPECT_EQ(implementation_of("Some Driver", "", "OpenCL 1.2"), "some-driver") << "its OpenCL is no driver's version";
     EXPECT_EQ(implementation_of("", "", ""), "opencl");
-    EXPECT_EQ(implementation_of("NVIDIA CUDA", "", ""), "nvidia");
+    EXPECT_EQ(implementation_of("NVIDIA CUDA", "", ""), "nvidia-opencl");
 }
 
 TEST(OpenclErrors, name_the_call_the_code_and_the_device)

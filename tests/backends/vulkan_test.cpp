@@ -268,7 +268,7 @@ TEST(VulkanImplementation, is_read_from_whatever_drivers_say)
     using vulkan::implementation_of;
     EXPECT_EQ(implementation_of("llvmpipe", "Mesa 22.3.6 (LLVM 15.0.6)"), "lavapipe-22.3");
     EXPECT_EQ(implementation_of("llvmpipe", "Mesa 25.0.7-2 (LLVM 19.1.7)"), "lavapipe-25.0");
-    EXPECT_EQ(implementation_of("NVIDIA", "580.65.06"), "nvidia-580");
+    EXPECT_EQ(implementation_of("NVIDIA", "580.65.06"), "nvidia-vulkan-580");
     EXPECT_EQ(implementation_of("radv", "Mesa 22.3.6"), "radv-22.3");
     EXPECT_EQ(implementation_of("Intel open-source Mesa driver", "Mesa 23.2.1-1ubuntu3"),
               "intel-open-source-mesa-driver-23.2");
@@ -281,7 +281,7 @@ TEST(VulkanImplementation, only_lavapipe_before_mesa_25_limits_the_steps_of_a_wa
 {
     for (const char* const limited : {"lavapipe-22.3", "lavapipe-24.3", "lavapipe"})
         EXPECT_EQ(vulkan::max_steps_of(limited), 28'000u) << limited;
-    for (const char* const free : {"lavapipe-25.0", "lavapipe-26.1", "radv-22.3", "nvidia-580", "unknown"})
+    for (const char* const free : {"lavapipe-25.0", "lavapipe-26.1", "radv-22.3", "nvidia-vulkan-580", "unknown"})
         EXPECT_EQ(vulkan::max_steps_of(free), 0u) << free;
 }
 
