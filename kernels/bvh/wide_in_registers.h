@@ -1,6 +1,6 @@
 // Numbers of 352 bits in variables, for exact_order.h, which says what each statement does: for drivers that end
-// loops early, as lavapipe 22.3 does: those of wide_in_memory.h use up an invocation's iterations. A GPU needs twice the
-// registers for it.
+// loops early, as lavapipe 22.3 does: those of wide_in_memory.h use up an invocation's iterations. A GPU needs twice
+// the registers for it.
 STRUCT(Wide)
 {
     uint w0;
