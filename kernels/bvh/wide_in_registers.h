@@ -1,6 +1,6 @@
-// Numbers of 352 bits in variables, for exact_order.h, which says what each statement does: for compilers that may read
-// words of an array in memory that were not written, as lavapipe 22.3 does where loops index it. A GPU needs twice the
-// registers for it.
+// Numbers of 352 bits in variables, for exact_order.h, which says what each statement does: for drivers that end
+// loops early, as lavapipe 22.3 does: those of wide_in_memory.h use up an invocation's iterations. A GPU needs twice
+// the registers for it.
 STRUCT(Wide)
 {
     uint w0;

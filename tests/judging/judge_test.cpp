@@ -39,6 +39,13 @@ protected:
         bytes.append(reinterpret_cast<const char*>(array.values.data()), 8 * array.values.size());
         write_file(folder_ / name, bytes);
     }
+    /// Null: there is none. Debian's numpy is for Debian's python3, which may not be the first in PATH.
+    static const char* python_with_numpy()
+    {
+        for (const char* const candidate : {"/usr/bin/python3", "python3"})
+            if (std::system(fmt::format("{} -c 'import numpy' 2> /dev/null", candidate).c_str()) == 0) return candidate;
+        return nullptr;
+    }
     nlohmann::json result() { return nlohmann::json::parse(file("judged.json")).at("tetrace").at("judged"); }
 };
 
@@ -141,9 +148,7 @@ TEST_F(JudgeProgram, takes_a_mesh_as_its_file_has_it)
 
 TEST_F(JudgeProgram, example_with_numpy_in_the_documentation_works)
 {
-    const char* python = nullptr; // Debian's numpy is for Debian's python3, which may not be the first in PATH
-    for (const char* const candidate : {"/usr/bin/python3", "python3"})
-        if (std::system(fmt::format("{} -c 'import numpy' 2> /dev/null", candidate).c_str()) == 0) python = candidate;
+    const char* const python = python_with_numpy();
     if (python == nullptr) GTEST_SKIP() << "python3-numpy is not installed";
     if (!has_builder()) GTEST_SKIP() << "tetrace-builder, which reads meshes, is not built here";
     const std::string page = read_text(std::filesystem::path(TETRACE_DOCS) / "judge.md");
@@ -156,4 +161,30 @@ TEST_F(JudgeProgram, example_with_numpy_in_the_documentation_works)
     ASSERT_EQ(traced.code, 0) << traced.errors;
     const Ended judged = run("judge --mesh mesh.obj --rays rays.npy --hits hits.npy");
     EXPECT_EQ(judged.code, 0) << judged.out << judged.errors;
+}
+
+// scripts/how-wrong on one mesh: its corpus has the right answers, and tetrace's are right for rays that are not hard.
+TEST_F(JudgeProgram, script_of_how_wrong_ray_tracers_are_judges_them_on_a_corpus)
+{
+    const char* const python = python_with_numpy();
+    if (python == nullptr) GTEST_SKIP() << "python3-numpy is not installed";
+    const auto library = std::filesystem::path(TETRACE_PROGRAM).parent_path() / "libtetrace.so.0.1";
+    if (!has_builder() || !std::filesystem::exists(library)) GTEST_SKIP() << "the library is not built here";
+    const Ended ran = run(fmt::format("'{}/scripts/how-wrong' '{}' corpus --meshes boxes --count 100 --size 16 "
+                                      "--out how.md",
+                                      TETRACE_ROOT, TETRACE_PROGRAM),
+                          python);
+    ASSERT_EQ(ran.code, 0) << ran.out << ran.errors;
+    const Ended judged = run("judge --mesh corpus/boxes.obj --rays corpus/boxes-hard.npy "
+                             "--hits corpus/boxes-hard-answers.npy --out judged.json");
+    EXPECT_EQ(judged.code, 0) << judged.out << judged.errors;
+    EXPECT_EQ(result().at("rays"), 100);
+    const std::string page = file("how.md");
+    for (const char* const line : {"| bvh2 | 300 |", "| project half32 | 300 |", "| stp tet80, openmp | 256 |"})
+        EXPECT_NE(page.find(line), std::string::npos) << page;
+    const std::size_t random = page.find("| random |");
+    ASSERT_NE(random, std::string::npos) << page;
+    EXPECT_TRUE(page.substr(random, page.find('\n', random) - random)
+                    .ends_with("| 0 / 0 / 0 / 0 | 0 / 0 / 0 / 0 | 0 / 0 / 0 / 0 | 0 / 0 / 0 / 0 |"))
+        << page;
 }
