@@ -9,6 +9,10 @@
 
 #include "kernels/language/scene_view_cuda.h"
 
+#define LENGTH_SUMS uint*
+#define NO_SUMS nullptr
+#define HAS_SUMS(sums) ((sums) != nullptr)
+#define ADD_TO_SUM(sums, word, added) atomicAdd((sums) + (word), added)
 #include "kernels/kernel.h"
 
 #define JOINED(prefix, name) prefix##name
@@ -168,18 +172,30 @@ extern "C" __global__ void ENTRY(rays_persistent_, KERNEL_NAME)(SceneView scene,
 #endif
 
 #ifdef CROSSES_TETS
-// The segments of one given ray per thread, one tile per block.
-extern "C" __global__ void ENTRY(segments_tiles_, KERNEL_NAME)(SceneView scene, LaunchParams launch, uint* output,
-                                                               const uint4* __restrict__ rays)
+// The segments of one given ray per thread, one tile per block. sums: as cross_tets() has them.
+KERNEL_FN void cross_from_pixel(SceneView scene, LaunchParams launch, LENGTH_SUMS sums, uint* output,
+                                const uint4* __restrict__ rays)
 {
     Pixel pixel = pixel_of(launch, launch.first_tile + blockIdx.x, threadIdx.x);
     if (!is_in_image(launch, pixel)) return;
     uint ray = ray_index(pixel);
-    Segments all = cross_tets(scene, launch.trace, __ldg(rays + ray), __ldg(rays + ray_count(launch) + ray));
+    Segments all = cross_tets(scene, launch.trace, sums, __ldg(rays + ray), __ldg(rays + ray_count(launch) + ray));
     uint2* pairs = reinterpret_cast<uint2*>(output + output_word(launch, pixel));
     pairs[0] = make_uint2(all.first, all.last);
     pairs[1] = make_uint2(all.total, all.hash);
     pairs[2] = make_uint2(all.reversed, all.crossings);
+}
+
+extern "C" __global__ void ENTRY(segments_tiles_, KERNEL_NAME)(SceneView scene, LaunchParams launch, uint* output,
+                                                               const uint4* __restrict__ rays)
+{
+    cross_from_pixel(scene, launch, NO_SUMS, output, rays);
+}
+
+extern "C" __global__ void ENTRY(tally_tiles_, KERNEL_NAME)(SceneView scene, LaunchParams launch, uint* output,
+                                                            const uint4* __restrict__ rays)
+{
+    cross_from_pixel(scene, launch, output + GUARD_WORDS + HIT_WORDS * ray_count(launch), output, rays);
 }
 #endif
 

@@ -35,6 +35,7 @@ CudaSession::CudaSession(const Driver& driver, Ordinal device, const Programs& p
       tile_height_(tile_height), threads_(options.threads), max_buffer_bytes_(options.max_buffer_bytes),
       launches_(tile_height), bytes_(scene.bytes())
 {
+    make_tally(kernel.task, scene.tet_count);
     require_arrays_fit(scene, max_buffer_bytes_);
     setup_.compile_s = program_.compile_s;
     setup_.compile_cached = program_.cached;

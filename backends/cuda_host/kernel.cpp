@@ -56,6 +56,11 @@ void ENTRY(run_segments_tiles_, KERNEL_NAME)(void** arguments)
 {
     call(ENTRY(segments_tiles_, KERNEL_NAME), arguments);
 }
+
+void ENTRY(run_tally_tiles_, KERNEL_NAME)(void** arguments)
+{
+    call(ENTRY(tally_tiles_, KERNEL_NAME), arguments);
+}
 #endif
 
 #ifdef SEARCHES_EXITS

@@ -1,12 +1,18 @@
 // A kernel as an OpenCL program (CMakeLists.txt): a thin entry around the shared text. Build options (session.cpp):
-// GROUP_ITEMS, the items of a work group, which traces one tile at a time; PERSISTENT for that schedule; RAYS, SEARCH
-// and SEGMENTS for those tasks; STARTS_OUTSIDE if no ray of an image begins in a tet; MATH_FAST; TETS_IN_PARTS;
+// GROUP_ITEMS, the items of a work group, which traces one tile at a time; PERSISTENT for that schedule; RAYS, SEARCH,
+// SEGMENTS and TALLY for those tasks; STARTS_OUTSIDE if no ray of an image begins in a tet; MATH_FAST; TETS_IN_PARTS;
 // STACK_TOP, where stacks begin in local memory.
 #include "kernels/language/dialect_opencl.h"
 
 #include "kernels/language/vector.h"
 
 #include "kernels/language/scene_view_opencl.h"
+
+#ifdef TALLY
+#define LENGTH_SUMS __global uint*
+#define HAS_SUMS(sums) true
+#define ADD_TO_SUM(sums, word, added) atomic_add((sums) + (word), added)
+#endif
 
 #include "kernels/kernel.h"
 
@@ -22,9 +28,15 @@ KERNEL_FN void run_item(SceneView scene, LaunchParams launch, uint tile, __globa
     output[GUARD_WORDS + ray] = search_exit(scene, rays[ray], rays[count + ray], rays[2u * count + ray]);
 #else
     __global uint2* pairs = (__global uint2*)(output + output_word(launch, pixel));
-#ifdef SEGMENTS
+#if defined(SEGMENTS) || defined(TALLY)
     uint ray = ray_index(pixel);
-    Segments all = cross_tets(scene, launch.trace, rays[ray], rays[ray_count(launch) + ray]);
+    uint count = ray_count(launch);
+#ifdef TALLY
+    LENGTH_SUMS sums = output + GUARD_WORDS + HIT_WORDS * count;
+#else
+    LENGTH_SUMS sums = NO_SUMS;
+#endif
+    Segments all = cross_tets(scene, launch.trace, sums, rays[ray], rays[count + ray]);
     pairs[0] = (uint2)(all.first, all.last);
     pairs[1] = (uint2)(all.total, all.hash);
     pairs[2] = (uint2)(all.reversed, all.crossings);

@@ -42,6 +42,7 @@ OpenclSession::OpenclSession(std::shared_ptr<Context> context, const KernelId& k
       domain_(domain_of(scene)), tet_parts_(tet_parts(scene, max_buffer_bytes_)), scene_bytes_(scene.bytes()),
       launches_(tile_height_)
 {
+    make_tally(kernel.task, scene.tet_count);
     run("making a queue", 0, [&] { queues_.push_back(context_->make_queue()); });
     upload(scene);
     compile();

@@ -5,6 +5,7 @@
 #include "core/device/host.h"
 #include "core/device/launch.h"
 
+#include <atomic>
 #include <bit>
 #include <cassert>
 #include <cfenv>
@@ -27,6 +28,10 @@ thread_local tetrace::openmp::Crossings* crossings;
 #define NOTE_BEGIN(place) (crossings->tets.clear(), crossings->places.assign(1, place))
 #define NOTE_CROSSING(tet, place) (crossings->tets.push_back(tet), crossings->places.push_back(place))
 #endif
+#define LENGTH_SUMS uint*
+#define NO_SUMS nullptr
+#define HAS_SUMS(sums) ((sums) != nullptr)
+#define ADD_TO_SUM(sums, word, added) std::atomic_ref((sums)[word]).fetch_add(added, std::memory_order_relaxed)
 #include "kernels/kernel_cpp.h"
 
 static_assert(sizeof(Hit) == sizeof(tetrace::Hit) && sizeof(LaunchParams) == sizeof(tetrace::LaunchParams));
@@ -66,6 +71,20 @@ void for_pixels(const tetrace::PackedScene& packed, const tetrace::TraceJob& job
     std::fesetenv(&environment);
 }
 
+#if defined(CROSSES_TETS) && !defined(NOTES_CROSSINGS)
+void cross_all(const tetrace::PackedScene& packed, std::span<const tetrace::Quad> rays, const tetrace::TraceJob& job,
+               std::span<std::uint32_t> output, LENGTH_SUMS sums, tetrace::SharedTiles& shared, unsigned tile_height)
+{
+    tetrace::Hit* const answers = tetrace::as_hits(output).data();
+    for_pixels(packed, job, shared, tile_height,
+               [&](const SceneView& scene, const ::LaunchParams& launch, Pixel pixel) {
+                   const uint ray = ray_index(pixel);
+                   answers[ray] = std::bit_cast<tetrace::Hit>(
+                       cross_tets(scene, launch.trace, sums, rays[ray], rays[ray_count(launch) + ray]));
+               });
+}
+#endif
+
 } // namespace
 
 #define JOINED(prefix, name) prefix##name
@@ -81,7 +100,7 @@ void FUNCTION(note_, KERNEL_NAME)(const PackedScene& packed, const Quad& directi
     params.max_steps = max_steps;
     crossings = &noted;
     noted = {};
-    static_cast<void>(cross_tets(view_of(packed), params, direction, origin));
+    static_cast<void>(cross_tets(view_of(packed), params, NO_SUMS, direction, origin));
 }
 #else
 void FUNCTION(trace_, KERNEL_NAME)(const PackedScene& packed, std::span<const Quad>, const TraceJob& job,
@@ -126,13 +145,13 @@ void FUNCTION(search_, KERNEL_NAME)(const PackedScene& packed, std::span<const Q
 void FUNCTION(segments_, KERNEL_NAME)(const PackedScene& packed, std::span<const Quad> rays, const TraceJob& job,
                                       std::span<std::uint32_t> output, SharedTiles& shared, unsigned tile_height)
 {
-    tetrace::Hit* const answers = as_hits(output).data();
-    for_pixels(
-        packed, job, shared, tile_height, [&](const SceneView& scene, const ::LaunchParams& launch, Pixel pixel) {
-            const uint ray = ray_index(pixel);
-            answers[ray] =
-                std::bit_cast<tetrace::Hit>(cross_tets(scene, launch.trace, rays[ray], rays[ray_count(launch) + ray]));
-        });
+    cross_all(packed, rays, job, output, NO_SUMS, shared, tile_height);
+}
+
+void FUNCTION(tally_, KERNEL_NAME)(const PackedScene& packed, std::span<const Quad> rays, const TraceJob& job,
+                                   std::span<std::uint32_t> output, SharedTiles& shared, unsigned tile_height)
+{
+    cross_all(packed, rays, job, output, output.data() + HIT_WORDS * job.rays(), shared, tile_height);
 }
 #endif
 #endif

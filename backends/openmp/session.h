@@ -11,6 +11,7 @@ public:
     OpenmpSession(RunFunction* function, Task task, const PackedScene& scene, unsigned threads, unsigned tile_height)
         : HostSession(task, threads), run_(function), scene_(scene), tile_height_(tile_height)
     {
+        make_tally(task, scene.tet_count);
     }
     void set_rays(std::span<const Quad> quads) override { rays_.assign(quads.begin(), quads.end()); }
     [[nodiscard]] SetupTimes setup_times() const override { return {}; }

@@ -1,7 +1,7 @@
 #version 450
 // A kernel as a compute shader (CMakeLists.txt): a thin entry around the shared text. A work group is a tile. TRACE,
-// RAYS, SEARCH or SEGMENTS: the task. With TRACE or RAYS, DEFERS_RAYS: rays at ties are deferred to the program with
-// TRACES_DEFERRED, which traces only those.
+// RAYS, SEARCH, SEGMENTS or TALLY: the task. With TRACE or RAYS, DEFERS_RAYS: rays at ties are deferred to the program
+// with TRACES_DEFERRED, which traces only those.
 layout(constant_id = 2) const bool selects_minima = false; // true if the driver's own minimum is slower
 #define SELECTS_MINIMA selects_minima
 #ifndef SCENE_IN_TEXELS
@@ -27,6 +27,16 @@ layout(local_size_x = TILE_WIDTH, local_size_y_id = 0) in; // constant 0 is the 
 #include "kernels/language/scene_view_glsl.h"
 #endif
 
+#ifdef TALLY // sums: their first word's number in the output
+layout(std430, set = 0, binding = OUTPUT_BINDING) buffer Output
+{
+    uint output_words[];
+};
+#define LENGTH_SUMS uint
+#define HAS_SUMS(sums) true
+#define ADD_TO_SUM(sums, word, added) atomicAdd(output_words[(sums) + (word)], added)
+#endif
+
 #include "kernels/kernel.h"
 
 layout(constant_id = 1) const bool starts_outside = false; // of all rays: no start in a tet is compiled
@@ -34,10 +44,12 @@ layout(push_constant) uniform Launch
 {
     LaunchParams launch;
 };
+#ifndef TALLY
 layout(std430, set = 0, binding = OUTPUT_BINDING) writeonly buffer Output
 {
     uint output_words[];
 };
+#endif
 #if defined(DEFERS_RAYS) || defined(TRACES_DEFERRED)
 layout(std430, set = 0, binding = DEFERRED_BINDING) buffer Left
 {
@@ -132,9 +144,11 @@ void main()
     uint count = ray_count(launch);
     output_words[GUARD_WORDS + ray] =
         search_exit(scene, RAY_QUAD(ray), RAY_QUAD(count + ray), RAY_QUAD(2u * count + ray));
-#elif defined(SEGMENTS)
+#elif defined(SEGMENTS) || defined(TALLY)
     uint ray = ray_index(pixel);
-    Segments all = cross_tets(scene_view(), launch.trace, RAY_QUAD(ray), RAY_QUAD(ray_count(launch) + ray));
+    uint count = ray_count(launch);
+    uint sums = GUARD_WORDS + HIT_WORDS * count;
+    Segments all = cross_tets(scene_view(), launch.trace, sums, RAY_QUAD(ray), RAY_QUAD(count + ray));
     uint word = output_word(launch, pixel);
     output_words[word] = all.first;
     output_words[word + 1u] = all.last;

@@ -83,6 +83,7 @@ VulkanSession::VulkanSession(const FoundDevice& found, const KernelId& kernel, c
 {
     require_storage_buffers(found, scene, tet_parts_);
     require_variant(kernel, tet_parts_);
+    make_tally(kernel.task, scene.tet_count);
     const Stopwatch watch;
     context_.run("uploading the scene", scene.bytes(), [&] { make_scene_buffers(scene); });
     setup_.upload_s = watch.seconds();
@@ -267,7 +268,7 @@ void VulkanSession::enqueue(std::span<const LaunchPiece> pieces, std::uint32_t p
     const vk::raii::CommandBuffer& commands = commands_for(enqueued_.size());
     const vk::raii::QueryPool& times = chunks_[enqueued_.size()].times;
     commands.begin({});
-    if (pieces.front().job == 0 && pieces.front().params.first_tile == 0) {
+    if (std::exchange(fills_output_, false)) { // once: further passes add to a tally
         // In the kernel's own commands, so that the validation layers see both.
         commands.fillBuffer(output_.handle(), 0, VK_WHOLE_SIZE, POISON);
         record_barrier(context_, commands);
@@ -337,6 +338,7 @@ void VulkanSession::start(std::span<const TraceJob> jobs)
         const auto starts_inside = [](const TraceJob& job) { return job.start_tet != NO_TET; };
         if (starts_outside_ && std::ranges::any_of(jobs, starts_inside)) compile_starts_inside();
         resize_output();
+        fills_output_ = true;
         launches_.start(
             launch_params(jobs, domain_, tile_height_, tet_parts_.log2_bytes), jobs.front().passes,
             [this](std::span<const LaunchPiece> pieces, std::uint32_t passes) { enqueue(pieces, passes); },

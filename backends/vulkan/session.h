@@ -84,8 +84,9 @@ private:
     std::vector<Buffer> more_parts_; ///< of the tets, from the second on
     std::optional<Acceleration> acceleration_;
     Buffer rays_, output_, staging_;
-    OutputParts parts_; ///< of output_
-    Buffer left_;       ///< of each job the rays that programs_.front() leaves: DEFERRED_PIXELS and so on of layout.h
+    OutputParts parts_;         ///< of output_
+    bool fills_output_ = false; ///< by the next commands
+    Buffer left_; ///< of each job the rays that programs_.front() leaves: DEFERRED_PIXELS and so on of layout.h
     OutputParts left_parts_;        ///< of left_
     std::vector<Program> programs_; ///< the kernel, and if it defers ties the one that traces those rays
 

@@ -8,6 +8,7 @@
 #include "bench/terminal/interrupts.h"
 #include "bench/terminal/progress.h"
 #include "bench/terminal/text.h"
+#include "bench/truth/tally.h"
 #include "core/base/files.h"
 #include "core/base/hash.h"
 #include "core/base/stopwatch.h"
@@ -50,6 +51,7 @@ Pass pass_of(RowRun& row, const std::vector<ViewBatch>& batches,
 /// A device that answers differently under repetition, or to jobs in flight together, must lose its rate.
 void check_hits(const RowRun& row, const ViewBatch& views, std::span<const Hit> hits)
 {
+    if (traits_of(row.key.kernel.task).tallies) require_total(row.session->tally(), hits);
     for (const std::size_t view : views) {
         const auto of_view = hits.first(ray_count(row, view));
         hits = hits.subspan(of_view.size());

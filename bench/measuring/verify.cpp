@@ -6,6 +6,7 @@
 #include "bench/rows/row_tracing.h"
 #include "bench/truth/crossings.h"
 #include "bench/truth/oracle.h"
+#include "bench/truth/tally.h"
 #include "core/base/hash.h"
 #include "core/base/stopwatch.h"
 #include "core/device/host.h"
@@ -117,7 +118,9 @@ public:
         image.visits = count_visits(row, view, hits, threads_);
         image.hit_hash = hash_of(hits);
         if (reference_of(row.key)) compare(row, image, view);
-        image.verdicts = judge(row, view, image.hit_hash);
+        Judged& judged = judge(row, view, image.hit_hash);
+        image.verdicts = judged.verdicts;
+        if (traits_of(row.key.kernel.task).tallies) check_tally(row, view, judged);
         if (traits_of(row.key.kernel.task).finds_hits) name_source_triangles(image);
         return image;
     }
@@ -136,6 +139,7 @@ private:
         RowKey key;
         std::uint64_t hash;
         Verdicts verdicts;
+        std::vector<std::uint64_t> tally; ///< of the walks of these answers; empty: not summed up yet
     };
 
     void trace_timed(RowRun& row, ImageVerdict& image, std::size_t view)
@@ -167,22 +171,22 @@ private:
 
     /// The oracle's verdicts on hits. Hits with the same hash are the same bytes, except with a probability of 2^-64 a
     /// pair. A verdict in a view therefore holds for all rows that trace the same rays from the same points.
-    Verdicts judge(const RowRun& row, std::size_t view, std::uint64_t hash)
+    Judged& judge(const RowRun& row, std::size_t view, std::uint64_t hash)
     {
         const RowKey& key = row.key;
         if (judged_view_ != view) judged_.clear();
         judged_view_ = view;
-        for (const Judged& judged : judged_)
+        for (Judged& judged : judged_)
             if (judged.hash == hash && judged.key.kernel.structure == key.kernel.structure &&
                 same_rays(judged.key, key))
-                return judged.verdicts;
-        return judged_.emplace_back(Judged{key, hash, judge_anew(row, view)}).verdicts;
+                return judged;
+        return judged_.emplace_back(Judged{key, hash, judge_anew(row, view), {}});
     }
 
     Verdicts judge_anew(const RowRun& row, std::size_t view)
     {
         const RowKey& key = row.key;
-        if (key.kernel.task == Task::segments) return judge_segments(row, view);
+        if (traits_of(key.kernel.task).crosses) return judge_segments(row, view);
         const HitFormula formula = is_portable(key.kernel) ? HitFormula::kernels : HitFormula::other;
         if (key.kernel.task == Task::rays)
             return given_oracle().judge(scene_->given_rays().set(*scene_, key.rays, key.ray_order, view), hits,
@@ -192,21 +196,36 @@ private:
                              hits, formula);
     }
 
-    /// openmp's walk of each ray, tet by tet, is the claim that the answers are judged by.
-    Verdicts judge_segments(const RowRun& row, std::size_t view)
+    /// openmp's walk of each ray, tet by tet: the claim that the answers are judged by.
+    std::function<CrossedTets(std::size_t)> walks_of(const RowRun& row, std::size_t view)
     {
         openmp::NoteFunction* const note = openmp::find_note_function(row.key.kernel);
         if (note == nullptr) throw Error(ErrorKind::internal, "openmp notes no crossings of " + row_name(row.key));
         const PackedScene& packed = row.packed->data;
-        const RaySet& set = scene_->given_rays().set(*scene_, row.key.rays, row.key.ray_order, view);
         const std::vector<Quad>& quads = scene_->given_rays().rows(*scene_, row.key, &packed, view);
         const std::uint32_t cap = step_cap(scene_->counts().tets, row.device);
-        const auto walk_of = [&](std::size_t ray) {
+        return [note, cap, &packed, &quads](std::size_t ray) {
             openmp::Crossings noted;
-            note(packed, quads[ray], quads[set.rays.size() + ray], cap, noted);
+            note(packed, quads[ray], quads[quads.size() / GIVEN_RAY_QUADS + ray], cap, noted);
             return CrossedTets{std::move(noted.tets), std::move(noted.places)};
         };
-        return judge_crossings(scene_->loaded().scene, set, hits, inverse_of(packed.packed_of_mesh), walk_of, threads_);
+    }
+
+    Verdicts judge_segments(const RowRun& row, std::size_t view)
+    {
+        const RaySet& set = scene_->given_rays().set(*scene_, row.key.rays, row.key.ray_order, view);
+        return judge_crossings(scene_->loaded().scene, set, hits, inverse_of(row.packed->data.packed_of_mesh),
+                               walks_of(row, view), threads_);
+    }
+
+    /// The same sums as those of the walks that the answers are judged by, and as those of the answers.
+    void check_tally(const RowRun& row, std::size_t view, Judged& judged)
+    {
+        const std::vector<std::uint64_t> tally = row.session->tally();
+        require_total(tally, hits);
+        if (judged.tally.empty())
+            judged.tally = tally_of_walks(hits.size(), tally.size(), walks_of(row, view), threads_);
+        require_sums(tally, judged.tally);
     }
 
     void compare(const RowRun& row, ImageVerdict& image, std::size_t view)
@@ -220,9 +239,13 @@ private:
         if (!differences.first) return;
         const std::size_t ray = *differences.first;
         const std::uint32_t pixel = pixel_of_ray(row, view, ray);
-        image.first_different = DifferingRay{
-            scene_->view_numbers()[view], pixel % scene_->width(), pixel / scene_->width(), hits[ray], reference[ray],
-            row.key.kernel.task};
+        image.first_different =
+            DifferingRay{scene_->view_numbers()[view],
+                         pixel % scene_->width(),
+                         pixel / scene_->width(),
+                         hits[ray],
+                         reference[ray],
+                         traits_of(row.key.kernel.task).crosses ? Task::segments : row.key.kernel.task};
     }
 
     /// Users know the triangles of their file, not the pieces that a repair cut these into.

@@ -1,6 +1,7 @@
 #include "bench/measuring/view_recorder.h"
 
 #include "bench/rows/row_tracing.h"
+#include "bench/truth/tally.h"
 
 #include <fmt/format.h>
 
@@ -73,6 +74,7 @@ std::uint64_t ViewRecorder::hash_of_answers(RowRun& row, std::size_t view)
 {
     hits_.assign(ray_count(row, view), Hit{POISON, POISON, 0, 0, 0, 0});
     row.session->read_back(hits_);
+    if (traits_of(row.key.kernel.task).tallies) require_total(row.session->tally(), hits_);
     return hash_of(hits_);
 }
 

@@ -57,8 +57,8 @@ std::vector<OptionRow> inspect_options()
          usual_for(every_verb, "compile for this GPU: gfx1100, sm_90, ...")},
         {experiments, "--entry", "NAME",
          "Keep the entry points of this kind: 'outside' and 'inside', primary rays that start outside the domain or "
-         "in a tet; 'rays', given rays; 'search', exit searches of table5; 'segments', "
-         "given rays with all their tets. Default: all.",
+         "in a tet; 'rays', given rays; 'search', exit searches of table5; 'segments', given rays with all their tets; "
+         "'tally', the same with sums per tet. Default: all.",
          bit(Verb::inspect), true, append("--entry", &Options::entries)},
         {"Compilers", "--require-target", "GPU",
          "Fail with exit code 3 unless this target's compiler is here and compiles every program; "

@@ -64,7 +64,7 @@ auto if_steps(std::uint64_t RayTotals::*member)
                 [=](Traced& trace, const ResultValue& value) { read_into(trace.totals.*member, value); });
 }
 
-/// Of task segments: without a length nothing is reversed.
+/// Of tasks segments and tally: without a length nothing is reversed.
 auto of_segments(std::uint64_t RayTotals::*member)
 {
     return both(
@@ -257,7 +257,7 @@ std::vector<RowField> identity_fields()
                  read_into(row.key.kernel.task, value);
                  if (!traits_of(row.key.kernel.task).crosses) value.reject("is not a task that rows name");
              }),
-         recorded(R"({ "enum": ["segments"] })", optional, "left out of rows that trace"), csv("task")},
+         recorded(R"({ "enum": ["segments", "tally"] })", optional, "left out of rows that trace"), csv("task")},
         {"", "rays", &RowKey::rays,
          recorded(R"({ "enum": ["primary", "shadow", "ao", "diffuse", "random"] })", required, "their kind"),
          csv("rays")},
@@ -471,10 +471,12 @@ std::vector<RowField> answer_fields()
         {"counts", "hit_share", [](const Traced& trace) { return ray_shares(trace).hit; },
          recorded("share", optional, "of the rays: hits over rays"), csv("hit share", "", 3)},
         {"counts", "reversed", of_segments(&RayTotals::reversed),
-         recorded("count", optional, "of task segments: faces that come before one met earlier, within rounding"),
+         recorded("count", optional,
+                  "of tasks segments and tally: faces that come before one met earlier, within rounding"),
          csv("reversed")},
         {"counts", "length_units", of_segments(&RayTotals::length_units),
-         recorded("count", optional, "of task segments: the rays' length inside the tets, in units of 2^-28"),
+         recorded("count", optional,
+                  "of tasks segments and tally: the rays' length inside the tets, in units of 2^-28"),
          csv("length units")},
         {"counts", "misses", in(&Traced::totals, &RayTotals::misses), recorded("count", required)},
         {"counts", "lost", in(&Traced::totals, &RayTotals::lost), recorded("count", required)},

@@ -85,7 +85,8 @@ const AnswerForm& answers_of(Task task)
     switch (task) {
     case Task::trace:
     case Task::rays: return hits;
-    case Task::segments: return segments;
+    case Task::segments:
+    case Task::tally: return segments; // its sums have no form: they are judged as they are
     case Task::search: break;
     }
     throw Error(ErrorKind::internal, "answers_of: exit searches find faces");

@@ -22,7 +22,8 @@ std::uint64_t launch_bytes(const RowRun& row, const ViewBatch& views)
         rays.push_back(ray_count(row, view));
     const bool are_given = traits_of(row.key.kernel.task).takes_rays;
     if (are_given) rays = {ray_count(row, views)};
-    const std::uint64_t output = OutputParts(rays, HIT_WORDS).words() * sizeof(std::uint32_t);
+    const std::size_t sums = traits_of(row.key.kernel.task).tallies ? row.packed->data.tet_count : 0;
+    const std::uint64_t output = OutputParts(rays, HIT_WORDS, 2 * sums).words() * sizeof(std::uint32_t);
     return are_given ? std::max<std::uint64_t>(output, GIVEN_RAY_QUADS * sizeof(Quad) * rays.front()) : output;
 }
 

@@ -30,12 +30,13 @@ public:
     static constexpr std::size_t alignment = 1024;
 
     OutputParts() = default;
-    /// rays: of each job.
-    OutputParts(std::span<const std::size_t> rays, std::size_t words_per_ray)
+    /// rays: of each job. tally_words: of the sums that follow its rays' results.
+    OutputParts(std::span<const std::size_t> rays, std::size_t words_per_ray, std::size_t tally_words = 0)
+        : tally_words_(tally_words)
     {
         for (const std::size_t count : rays) {
             const std::size_t begin = (words() + alignment - 1) / alignment * alignment;
-            parts_.push_back({begin, 2 * std::size_t{GUARD_WORDS} + words_per_ray * count});
+            parts_.push_back({begin, 2 * std::size_t{GUARD_WORDS} + words_per_ray * count + tally_words});
         }
     }
 
@@ -47,11 +48,24 @@ public:
     [[nodiscard]] std::size_t begin(std::size_t job) const { return parts_[job].begin; }
     /// Of a job, with its guard words.
     [[nodiscard]] std::size_t size(std::size_t job) const { return parts_[job].size; }
-    /// A job's results in the whole output.
+    /// What a job writes in the whole output: its rays' results, then its sums.
+    template <class Word>
+    [[nodiscard]] std::span<Word> written(std::span<Word> output, std::size_t job) const
+    {
+        return output.subspan(begin(job) + GUARD_WORDS, size(job) - 2 * std::size_t{GUARD_WORDS});
+    }
+    /// A job's results of rays.
     template <class Word>
     [[nodiscard]] std::span<Word> results(std::span<Word> output, std::size_t job) const
     {
-        return output.subspan(begin(job) + GUARD_WORDS, size(job) - 2 * std::size_t{GUARD_WORDS});
+        const std::span<Word> all = written(output, job);
+        return all.first(all.size() - tally_words_);
+    }
+    /// A job's sums.
+    template <class Word>
+    [[nodiscard]] std::span<Word> tally(std::span<Word> output, std::size_t job) const
+    {
+        return written(output, job).last(tally_words_);
     }
 
     friend bool operator==(const OutputParts&, const OutputParts&) = default;
@@ -62,6 +76,7 @@ private:
         friend bool operator==(const Part&, const Part&) = default;
     };
     std::vector<Part> parts_;
+    std::size_t tally_words_ = 0;
 };
 
 /// What a device's compiler made of a kernel.
@@ -226,6 +241,12 @@ public:
     /// faces.size(): the number of rays. Throws Error{wrong_result} if the kernel wrote outside its output, or a word
     /// that is not a face.
     void read_back(std::span<std::uint32_t> faces);
+    /// Task tally: the sum of the lengths of all rays in each tet, in packed order, as the last read_back() of hits has
+    /// read it; of each pass alone. Empty for other tasks. Throws Error{wrong_result} if the passes have different
+    /// sums.
+    [[nodiscard]] std::vector<std::uint64_t> tally() const;
+    /// The same as words of the output: two per tet, lower word first, counted from POISON, all passes together.
+    [[nodiscard]] std::span<const std::uint32_t> tally_words() const { return tally_words_; }
     /// launch(), wait() and read_back(); returns device seconds.
     [[nodiscard]] double trace(std::span<const TraceJob> jobs, std::span<Hit> hits);
     [[nodiscard]] double trace(const TraceJob& job, std::span<Hit> hits) { return trace(std::span(&job, 1), hits); }
@@ -239,7 +260,12 @@ public:
 
 protected:
     /// Where the results of the last launch are in its output; start() may call it.
-    [[nodiscard]] OutputParts output_parts(std::size_t words_per_ray) const { return {job_rays_, words_per_ray}; }
+    [[nodiscard]] OutputParts output_parts(std::size_t words_per_ray) const
+    {
+        return {job_rays_, words_per_ray, tally_words_.size()};
+    }
+    /// For the constructor of a session: its kernel's task may sum up for each tet.
+    void make_tally(Task task, std::size_t tets);
 
 private:
     template <class Result>
@@ -250,6 +276,8 @@ private:
     virtual void read_output(std::span<std::uint32_t> words) = 0;
 
     std::vector<std::size_t> job_rays_; ///< of the last launch
+    std::vector<std::uint32_t> tally_words_;
+    std::uint32_t passes_ = 1; ///< of the last launch
     double download_s_ = 0;
 };
 

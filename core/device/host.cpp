@@ -68,7 +68,7 @@ void HostSession::start(std::span<const TraceJob> jobs)
     output_.assign(parts.words(), POISON);
     const Stopwatch watch;
     on_team(threads_, jobs.front().passes, jobs.size(), [&](std::size_t job, SharedTiles& tiles) {
-        run(jobs[job], parts.results(std::span(output_), job), tiles);
+        run(jobs[job], parts.written(std::span(output_), job), tiles);
     });
     kernel_s_ = watch.seconds();
 }

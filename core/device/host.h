@@ -28,7 +28,7 @@ private:
     void start(std::span<const TraceJob> jobs) final;
     void read_output(std::span<std::uint32_t> words) final;
     /// Traces what this thread takes of the image's tiles; each thread calls it. output: of the whole image,
-    /// words_per_ray() per ray, row after row.
+    /// words_per_ray() per ray, row after row; then the words of the tally.
     virtual void run(const TraceJob& job, std::span<std::uint32_t> output, SharedTiles& tiles) = 0;
 
     Task task_;

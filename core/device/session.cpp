@@ -110,6 +110,9 @@ void Session::launch(std::span<const TraceJob> jobs)
     const auto passes = [](const TraceJob& job) { return job.passes; };
     if (jobs.empty() || std::ranges::adjacent_find(jobs, std::ranges::not_equal_to(), passes) != jobs.end())
         throw Error(ErrorKind::internal, "a launch of no job, or of jobs with different passes");
+    if (!tally_words_.empty() && jobs.size() != 1)
+        throw Error(ErrorKind::internal, "a launch of several jobs, which would have a tally each");
+    passes_ = jobs.front().passes;
     job_rays_.clear();
     for (const TraceJob& job : jobs)
         job_rays_.push_back(job.rays());
@@ -132,7 +135,27 @@ void Session::read_results(std::span<Result> results)
         const auto from = parts.results(std::span<const std::uint32_t>(output), job);
         std::memcpy(results.data(), from.data(), from.size_bytes());
         results = results.subspan(from.size_bytes() / sizeof(Result));
+        std::ranges::copy(parts.tally(std::span<const std::uint32_t>(output), job), tally_words_.begin());
     }
+}
+
+void Session::make_tally(Task task, std::size_t tets)
+{
+    tally_words_.assign(traits_of(task).tallies ? 2 * tets : 0, POISON);
+}
+
+std::vector<std::uint64_t> Session::tally() const
+{
+    constexpr std::uint64_t zero = std::uint64_t{POISON} << 32 | POISON; // the output is filled with it
+    std::vector<std::uint64_t> sums(tally_words_.size() / 2);
+    for (std::size_t tet = 0; tet < sums.size(); ++tet) {
+        const std::uint64_t sum = (std::uint64_t{tally_words_[2 * tet + 1]} << 32 | tally_words_[2 * tet]) - zero;
+        if (sum % passes_ != 0)
+            throw Error(ErrorKind::wrong_result, "the sum of tet " + std::to_string(tet) + ", " + std::to_string(sum) +
+                                                     ", is not that of " + std::to_string(passes_) + " equal passes");
+        sums[tet] = sum / passes_;
+    }
+    return sums;
 }
 
 void Session::read_back(std::span<Hit> hits)

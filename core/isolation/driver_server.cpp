@@ -148,11 +148,13 @@ private:
     static void read(Session& session, Request what, std::uint64_t count, Descriptor file)
     {
         const bool are_faces = what == Request::read_faces;
-        const SharedMemory memory(std::move(file), count * (are_faces ? sizeof(std::uint32_t) : sizeof(Hit)));
+        const std::size_t bytes = count * (are_faces ? sizeof(std::uint32_t) : sizeof(Hit));
+        const SharedMemory memory(std::move(file), bytes + session.tally_words().size_bytes());
         if (are_faces)
             session.read_back(std::span(reinterpret_cast<std::uint32_t*>(memory.bytes().data()), count));
         else
             session.read_back(std::span(reinterpret_cast<Hit*>(memory.bytes().data()), count));
+        std::ranges::copy(std::as_bytes(session.tally_words()), memory.bytes().subspan(bytes).begin());
     }
 
     static void put_facts(ByteWriter& answer, const Session& session)

@@ -12,6 +12,7 @@ IsolatedSession::IsolatedSession(const IsolatedBackend& backend, std::size_t dev
                                  const SceneData& scene, SessionOptions options)
     : backend_(&backend), device_(device), kernel_(kernel), scene_(scene), options_(std::move(options))
 {
+    if (scene.packed != nullptr) make_tally(kernel.task, scene.packed->tet_count);
     open();
 }
 
@@ -136,7 +137,7 @@ void IsolatedSession::read_output(std::span<std::uint32_t> words)
     require_launched();
     const bool are_faces = kernel_.task == Task::search;
     const OutputParts parts = output_parts(words_per_ray(kernel_.task));
-    const std::size_t bytes = rays() * words_per_ray(kernel_.task) * sizeof(words[0]);
+    const std::size_t bytes = rays() * words_per_ray(kernel_.task) * sizeof(words[0]) + tally_words().size_bytes();
     if (bytes > output_.bytes().size()) {
         output_ = {};
         output_ = SharedMemory(bytes);
@@ -153,6 +154,8 @@ void IsolatedSession::read_output(std::span<std::uint32_t> words)
         std::ranges::copy(read.first(results.size()), results.begin());
         read = read.subspan(results.size());
     }
+    if (const auto sums = std::as_writable_bytes(parts.tally(words, 0)); !sums.empty())
+        std::ranges::copy(read.first(sums.size()), sums.begin());
 }
 
 namespace {

@@ -27,7 +27,7 @@ const std::vector<KernelRow>& kernel_rows()
 {
     // The list's words are these constants.
     constexpr unsigned trace = bit(Task::trace), rays = bit(Task::rays), search = bit(Task::search),
-                       segments = bit(Task::segments);
+                       segments = bit(Task::segments), tally = bit(Task::tally);
     constexpr unsigned tiles = bit(Schedule::tiles), persistent = bit(Schedule::persistent),
                        packets = bit(Schedule::packets), native = bit(Schedule::native),
                        pipeline = bit(Schedule::pipeline);
@@ -176,21 +176,28 @@ const TaskTraits& traits_of(Task task)
     switch (task) {
     case Task::trace: {
         static constexpr TaskTraits trace{
-            .takes_rays = false, .finds_hits = true, .crosses = false, .words = HIT_WORDS};
+            .takes_rays = false, .finds_hits = true, .crosses = false, .tallies = false, .words = HIT_WORDS};
         return trace;
     }
     case Task::rays: {
-        static constexpr TaskTraits rays{.takes_rays = true, .finds_hits = true, .crosses = false, .words = HIT_WORDS};
+        static constexpr TaskTraits rays{
+            .takes_rays = true, .finds_hits = true, .crosses = false, .tallies = false, .words = HIT_WORDS};
         return rays;
     }
     case Task::search: {
-        static constexpr TaskTraits search{.takes_rays = true, .finds_hits = false, .crosses = false, .words = 1};
+        static constexpr TaskTraits search{
+            .takes_rays = true, .finds_hits = false, .crosses = false, .tallies = false, .words = 1};
         return search;
     }
     case Task::segments: {
         static constexpr TaskTraits segments{
-            .takes_rays = true, .finds_hits = false, .crosses = true, .words = HIT_WORDS};
+            .takes_rays = true, .finds_hits = false, .crosses = true, .tallies = false, .words = HIT_WORDS};
         return segments;
+    }
+    case Task::tally: {
+        static constexpr TaskTraits tally{
+            .takes_rays = true, .finds_hits = false, .crosses = true, .tallies = true, .words = HIT_WORDS};
+        return tally;
     }
     }
     throw Error(ErrorKind::internal, "traits_of: no such task");

@@ -56,9 +56,9 @@ inline constexpr auto enum_names<Schedule> = names_up_to<Schedule::pipeline>("ti
 }
 /// What a kernel does: it traces the primary rays of an image, traces given rays, searches the exit face of a single
 /// tet for each given ray, or crosses every tet on given rays (core/rays/segments.h).
-enum class Task { trace, rays, search, segments };
+enum class Task { trace, rays, search, segments, tally };
 template <>
-inline constexpr auto enum_names<Task> = names_up_to<Task::segments>("trace", "rays", "search", "segments");
+inline constexpr auto enum_names<Task> = names_up_to<Task::tally>("trace", "rays", "search", "segments", "tally");
 /// What those who know nothing else of a task ask of it.
 struct TaskTraits {
     bool takes_rays; ///< given to a session; else they are an image's
@@ -66,6 +66,7 @@ struct TaskTraits {
                      ///< other tasks have only schedule tiles
     bool crosses;    ///< it goes through occlusive faces, to where a ray leaves the domain: no ray has an end, and math
                      ///< mode is exact
+    bool tallies;    ///< it has a sum of lengths per tet, too, after the answers of the rays
     std::size_t words; ///< of a ray's answer
 };
 [[nodiscard]] const TaskTraits& traits_of(Task task);

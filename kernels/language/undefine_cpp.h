@@ -16,6 +16,7 @@
 #undef STARTS_IN_TETS
 #undef SEARCHES_EXITS
 #undef CROSSES_TETS
+#undef ADD_LENGTH
 #undef WalkStart
 #undef WALK_START_AT
 #undef WALK_START_IN

@@ -1,5 +1,6 @@
 // Task segments: every tet that a given ray crosses, from where it enters the domain, or from its origin, to where it
-// leaves the domain (docs/spec/volume.md). The walk passes through occlusive faces. It is a method's own: tets, and so
+// leaves the domain (docs/spec/volume.md). Task tally: the same, and for each tet the sum of the lengths of all rays
+// inside it. The walk passes through occlusive faces. It is a method's own: tets, and so
 // their hash, are the same on all layouts.
 #ifndef TETRACE_KERNELS_WALKS_SEGMENTS_H
 #define TETRACE_KERNELS_WALKS_SEGMENTS_H
@@ -15,6 +16,27 @@
 #ifndef NOTE_BEGIN
 #define NOTE_BEGIN(place)
 #define NOTE_CROSSING(tet, place)
+#endif
+
+// Task tally: the sums of the tets, two words each, lower word first. Entry files with that task define how a word is
+// added to (kernel.h); others have no sums.
+#ifndef ADD_TO_SUM
+#define LENGTH_SUMS uint
+#define NO_SUMS 0u
+#define HAS_SUMS(sums) false
+#define ADD_LENGTH(sums, tet, length, is_undone)
+#else
+// Adds a length to the tet's sum, or takes it back. Sums are modulo 2^64, so any order of these atomic additions of
+// words gives the same bits (docs/spec/volume.md, S9).
+KERNEL_FN void add_length(LENGTH_SUMS sums, uint tet, uint length, bool is_undone)
+{
+    if (!HAS_SUMS(sums) || length == 0u) return;
+    uint low = is_undone ? 0u - length : length;
+    uint before = ADD_TO_SUM(sums, 2u * tet, low);
+    uint high = (is_undone ? 0xFFFFFFFFu : 0u) + (before > 0xFFFFFFFFu - low ? 1u : 0u);
+    if (high != 0u) ADD_TO_SUM(sums, 2u * tet + 1u, high);
+}
+#define ADD_LENGTH(sums, tet, length, is_undone) add_length(sums, tet, length, is_undone)
 #endif
 
 // A ray's answer, in the order of its words in the output.
@@ -78,13 +100,15 @@ KERNEL_FN uint place_of_half_face(SceneView scene, Ray ray, uint half_face, uint
                          vertex(scene, tet, corner(face, 2u)), stretch);
 }
 
-// The walk after it has left its tet; tet and face are still those.
-KERNEL_FN Crossing leaving_tet(SceneView scene, Ray ray, uint stretch, Crossing at)
+// The walk after it has left its tet; tet and face are still those. is_undone: its length is taken back.
+KERNEL_FN Crossing leaving_tet(SceneView scene, Ray ray, uint stretch, MAYBE_UNUSED LENGTH_SUMS sums,
+                               MAYBE_UNUSED bool is_undone, Crossing at)
 {
     uint place = place_of_half_face(scene, ray, (at.tet << 2u) | at.face, stretch);
     NOTE_CROSSING(at.tet, place);
     Crossing next = at;
     next.farthest = place > at.farthest ? place : at.farthest;
+    ADD_LENGTH(sums, at.tet, next.farthest - at.farthest, is_undone);
     next.sum.last = at.tet;
     next.sum.hash = hash_with(hash_with(at.sum.hash, at.tet), place);
     next.sum.reversed = at.sum.reversed + (place < at.farthest ? 1u : 0u);
@@ -102,6 +126,18 @@ KERNEL_FN Crossing entering_tet(SceneView scene, Ray ray, uint half_face, Crossi
 }
 
 #ifdef WALKS_PATHS
+// Takes back the lengths of a walk that begins anew: of as many tets as it has left, from its beginning on.
+KERNEL_FN void take_back(SceneView scene, Ray ray, uint stretch, LENGTH_SUMS sums, Crossing begin, uint crossings)
+{
+    Crossing at = begin;
+    for (;;) {
+        at = leaving_tet(scene, ray, stretch, sums, true, at);
+        uint half_face = opposite_half_face(scene, at.tet, at.face);
+        if (half_face == NO_HALF_FACE || at.sum.crossings >= crossings) break;
+        at = entering_tet(scene, ray, half_face, at);
+    }
+}
+
 KERNEL_FN uint entered_half_face(SceneView scene, Ray ray)
 {
     return entry_half_face(scene, entrance_of(scene, ray, shear_of(ray)).index);
@@ -127,10 +163,10 @@ KERNEL_FN Exit exit_from_face(SceneView scene, Ray ray, uint half_face)
 }
 #endif
 
-// direction, origin: the ray's quads. Walks from inside begin anew as those to a hit do (docs/spec/project.md, P6 and
-// P8). Other walks than those along paths cannot begin anew: they are lost where they are found in a circle
-// (walk_by_neighbours.h).
-KERNEL_FN Segments cross_tets(SceneView scene, TraceParams params, uint4 direction, uint4 origin)
+// sums: to which each tet's length is added, or NO_SUMS. direction, origin: the ray's quads. Walks from inside begin
+// anew as those to a hit do (docs/spec/project.md, P6 and P8). Other walks than those along paths cannot begin anew:
+// they are lost where they are found in a circle (walk_by_neighbours.h).
+KERNEL_FN Segments cross_tets(SceneView scene, TraceParams params, LENGTH_SUMS sums, uint4 direction, uint4 origin)
 {
     Ray ray = given_ray(direction, origin);
     uint stretch = origin.w;
@@ -163,7 +199,7 @@ KERNEL_FN Segments cross_tets(SceneView scene, TraceParams params, uint4 directi
     for (;;) {
         if (at.face != NO_EXIT) {
             for (;;) {
-                at = leaving_tet(scene, ray, stretch, at);
+                at = leaving_tet(scene, ray, stretch, sums, false, at);
                 half_face = opposite_half_face(scene, at.tet, at.face);
                 if (half_face == NO_HALF_FACE || at.sum.crossings >= pause) break;
                 at = entering_tet(scene, ray, half_face, at);
@@ -179,6 +215,8 @@ KERNEL_FN Segments cross_tets(SceneView scene, TraceParams params, uint4 directi
             if (at.sum.crossings >= pause) break;
             at = entering_tet(scene, ray, half_face, at);
         } else {
+            if (HAS_SUMS(sums) && at.sum.crossings != 0u)
+                take_back(scene, ray, stretch, sums, begin_crossing(exit.tet, exit.face, begin), at.sum.crossings);
             half_face = NO_HALF_FACE;
             at = begin_crossing(ahead >> 2u, ahead & 3u, begin);
             if (ahead == NO_HALF_FACE) break;

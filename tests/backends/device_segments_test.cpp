@@ -1,4 +1,5 @@
-// On every device of every API that can be used here: rays cross the tets that they cross on openmp, bit for bit.
+// On every device of every API that can be used here: rays cross the tets that they cross on openmp, bit for
+// bit, and the tets have the same sums of their lengths.
 #include "tests/backends/each_device.h"
 #include "tests/support/crossed_tets.h"
 #include "tests/support/given_scene.h"
@@ -34,6 +35,29 @@ TEST_P(DeviceSegments, have_openmps_bits_for_each_method_and_layout)
             for (const RaySet& set : sets)
                 EXPECT_EQ(different_answers(tets.answers(*session, set), tets.answers(set)), 0u)
                     << backend.devices()[device].name << ' ' << name_of(kernel);
+        }
+    }
+}
+
+TEST_P(DeviceSegments, have_openmps_sums_per_tet_in_any_number_of_passes)
+{
+    const GivenScene cubes{24, false, 6};
+    const std::vector<RaySet> sets = {hard_ray_set(cubes.scene, 0, 1800), make_rays(RayKind::diffuse, cubes.source())};
+    for (const KernelId& kernel : kernels_of(Task::tally)) {
+        const CrossedScene tets(cubes.scene, kernel.method, kernel.layout, Task::tally);
+        const auto reference = tets.session(1);
+        for (const std::size_t device : usable) {
+            const auto session = backend.open(device, kernel, {&cubes.scene.mesh, &tets.packed()}, {});
+            for (const RaySet& set : sets) {
+                const std::vector<Hit> expected = tets.answers(*reference, set);
+                EXPECT_EQ(different_answers(tets.answers(*session, set), expected), 0u) << name_of(kernel);
+                EXPECT_EQ(session->tally(), reference->tally()) << name_of(kernel);
+                TraceJob job = given_job(set.rays.size(), tets.packed().tet_count + 1, false);
+                job.passes = 3;
+                std::vector<Hit> answers(set.rays.size());
+                static_cast<void>(session->trace(job, answers));
+                EXPECT_EQ(session->tally(), reference->tally()) << name_of(kernel) << ", three passes";
+            }
         }
     }
 }

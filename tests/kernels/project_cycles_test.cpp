@@ -1,5 +1,7 @@
 // Cycles of project: tets off the ray's path that its signs join in a circle, and the walk that begins anew there.
+#include "bench/truth/tally.h"
 #include "core/device/given_quads.h"
+#include "tests/support/crossed_tets.h"
 #include "tests/support/device_rays.h"
 #include "tests/support/hard_rays.h"
 #include "tests/support/project_on_grids.h"
@@ -279,4 +281,32 @@ TEST(ProjectCycles, begins_given_rays_anew_with_the_same_bits_on_every_layout_an
         kernel.schedule = Schedule::packets;
         expect_same_hits(kernel, grid, packed, hits_of, expected);
     }
+}
+
+TEST(ProjectCycles, leave_nothing_in_the_sums_of_a_tally)
+{
+    const Grid grid("cluster", cluster_of(0x1p-24f));
+    const RaySet set = given_among_others(grid, cyclic_starts(grid, 3000));
+    const CrossedScene tets(grid.scene, Method::project, Layout::half32, Task::tally);
+    const auto quads = segment_quads(set, tets.packed());
+    openmp::NoteFunction* const note = openmp::find_note_function(tets.kernel());
+    const auto expected = tally_of_walks(
+        set.rays.size(), tets.packed().tet_count,
+        [&](std::size_t ray) {
+            openmp::Crossings noted;
+            note(tets.packed(), quads[ray], quads[set.rays.size() + ray], many_steps, noted);
+            return CrossedTets{std::move(noted.tets), std::move(noted.places)};
+        },
+        2);
+    for (Backend* backend : all_backends())
+        for (std::size_t device = 0; device < backend->devices().size(); ++device) {
+            if (!is_usable(*backend, device)) continue;
+            const auto session =
+                backend->open(device, tets.kernel(), {&grid.scene.mesh, &tets.packed()}, {.threads = 2});
+            session->set_rays(quads);
+            std::vector<Hit> answers(set.rays.size());
+            static_cast<void>(session->trace(given_job(set.rays.size(), many_steps, false), answers));
+            EXPECT_FALSE(any_is_lost(answers)) << backend->name();
+            EXPECT_EQ(session->tally(), expected) << backend->name();
+        }
 }

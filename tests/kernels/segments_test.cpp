@@ -141,7 +141,8 @@ TEST(Segments, a_circle_is_found_long_before_the_cap)
     const auto quads = segment_quads(set, packed);
     std::size_t lost = 0;
     for (std::size_t i = 0; i < set.rays.size(); ++i) {
-        const auto answer = kernel::cross_tets(kernel::view_of(packed), params, quads[i], quads[set.rays.size() + i]);
+        const auto answer =
+            kernel::cross_tets(kernel::view_of(packed), params, NO_SUMS, quads[i], quads[set.rays.size() + i]);
         if (answer.first == LOST) ++lost;
         EXPECT_TRUE(answer.first == LOST || answer.first == NO_HIT) << i;
     }
@@ -197,6 +198,11 @@ TEST(Segments, of_uniform_lines_have_the_mean_length_of_integral_geometry)
             farthest = next;
         }
     }
+    const CrossedScene tallied(scene, Method::project, Layout::tet64, Task::tally);
+    const auto session = tallied.session(2);
+    static_cast<void>(tallied.answers(*session, set));
+    for (std::size_t tet = 0; const std::uint64_t units : session->tally())
+        EXPECT_EQ(length_of(units), sum[tets.mesh_of_packed()[tet++]]) << "the tally's sums are those tested below";
     const double radius = 0.53125 * length(to_double(scene.domain.high()) - to_double(scene.domain.low()));
     const auto count = static_cast<double>(set.rays.size());
     double chi_square = 0;

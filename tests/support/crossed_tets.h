@@ -7,16 +7,17 @@
 #include "core/pack/packed_scene.h"
 
 #include <cstdint>
+#include <memory>
 #include <utility>
 #include <vector>
 
 namespace tetrace::test {
 
-/// A scene packed for a kernel of task segments, and what openmp answers and notes there.
+/// A scene packed for a kernel of task segments or tally, and what openmp answers and notes there.
 class CrossedScene {
 public:
-    CrossedScene(const Scene& scene, Method method, Layout layout)
-        : scene_(scene), kernel_{.method = method, .layout = layout, .task = Task::segments},
+    CrossedScene(const Scene& scene, Method method, Layout layout, Task task = Task::segments)
+        : scene_(scene), kernel_{.method = method, .layout = layout, .task = task},
           packed_(pack(scene, layout, TetOrder::chains)), mesh_of_packed_(inverse_of(packed_.packed_of_mesh))
     {
     }
@@ -33,11 +34,11 @@ public:
         (void)session.trace(given_job(set.rays.size(), packed_.tet_count + 1, false), answers);
         return answers;
     }
-    [[nodiscard]] std::vector<Hit> answers(const RaySet& set) const
+    [[nodiscard]] std::unique_ptr<Session> session(unsigned threads) const
     {
-        const auto session = openmp_backend().open(0, kernel_, {&scene_.mesh, &packed_}, {.threads = 2});
-        return answers(*session, set);
+        return openmp_backend().open(0, kernel_, {&scene_.mesh, &packed_}, {.threads = threads});
     }
+    [[nodiscard]] std::vector<Hit> answers(const RaySet& set) const { return answers(*session(2), set); }
     [[nodiscard]] std::vector<CrossedTets> walks(const RaySet& set) const
     {
         openmp::NoteFunction* const note = openmp::find_note_function(kernel_);

@@ -16,7 +16,10 @@ namespace tetrace::test {
 /// Passes every call on to another session. A test overrides what it watches, delays or damages.
 class WrappedSession : public Session {
 public:
-    explicit WrappedSession(std::unique_ptr<Session> inner) : inner_(std::move(inner)) {}
+    explicit WrappedSession(std::unique_ptr<Session> inner) : inner_(std::move(inner))
+    {
+        if (const std::size_t words = inner_->tally_words().size(); words > 0) make_tally(Task::tally, words / 2);
+    }
     void set_rays(std::span<const Quad> quads) override { inner_->set_rays(quads); }
     void start(std::span<const TraceJob> jobs) override { inner_->launch(jobs); }
     [[nodiscard]] double wait() override { return inner_->wait(); }
@@ -36,6 +39,9 @@ public:
             std::memcpy(results.data(), next, results.size_bytes());
             next += results.size() / HIT_WORDS;
         }
+        if (inner_->tally_words().empty()) return;
+        std::ranges::copy(inner_->tally_words(), parts.tally(words, 0).begin());
+        change_tally(parts.tally(words, 0));
     }
     [[nodiscard]] SetupTimes setup_times() const override { return inner_->setup_times(); }
     [[nodiscard]] std::uint64_t bytes() const override { return inner_->bytes(); }
@@ -43,6 +49,8 @@ public:
 protected:
     /// What becomes of the hits that were read back.
     virtual void change(std::span<Hit>) {}
+    /// The same of the words of a tally.
+    virtual void change_tally(std::span<std::uint32_t>) {}
     [[nodiscard]] Session& inner() { return *inner_; }
 
 private:

@@ -36,6 +36,22 @@ private:
     Damage damage_;
 };
 
+using WordDamage = std::function<void(std::span<std::uint32_t>)>;
+
+/// The same of the words of a tally.
+class DamagedTally : public WrappedSession {
+public:
+    DamagedTally(std::unique_ptr<Session> inner, WordDamage damage)
+        : WrappedSession(std::move(inner)), damage_(std::move(damage))
+    {
+    }
+
+private:
+    void change_tally(std::span<std::uint32_t> words) override { damage_(words); }
+
+    WordDamage damage_;
+};
+
 class Verify : public testing::Test {
 protected:
     /// Verifies maria on tet80 through a damaged openmp that calls itself `backend`.
@@ -386,6 +402,27 @@ TEST_F(Verify, segments_are_compared_bit_by_bit_and_judged_by_the_walk)
     const RowRun lost = verified_segments(
         RayKind::random, [](std::span<Hit> hits) { hits[3].face_id = LOST; }, "openmp");
     EXPECT_EQ(traced(lost)->verdicts.lost, 2u);
+}
+
+TEST_F(Verify, sums_of_a_tally_are_judged_tet_by_tet)
+{
+    const auto verified_tally = [&](const WordDamage& damage, const std::string& backend) {
+        RowRun row = open_row({"cubes", "openmp", {.task = Task::tally}, RayKind::random}, scene_, options_);
+        row.key.backend = backend;
+        row.session = std::make_unique<DamagedTally>(std::move(row.session), damage);
+        verify_rows({&row}, scene_, options_);
+        return row;
+    };
+    for (const char* const backend : {"openmp", "other"}) {
+        const RowRun right = verified_tally([](std::span<std::uint32_t>) {}, backend);
+        EXPECT_EQ(status_of(right), Status::ok) << reason_of(right);
+        const RowRun carry = verified_tally([](std::span<std::uint32_t> words) { --words[1]; }, backend);
+        EXPECT_EQ(status_of(carry), Status::wrong);
+        EXPECT_NE(reason_of(carry).find("add up to"), std::string::npos) << reason_of(carry);
+        const RowRun moved = verified_tally([](std::span<std::uint32_t> words) { ++words[0], --words[4]; }, backend);
+        EXPECT_EQ(status_of(moved), Status::wrong);
+        EXPECT_NE(reason_of(moved).find("the sums of 2 of"), std::string::npos) << reason_of(moved);
+    }
 }
 
 TEST_F(Verify, a_given_ray_with_a_wrong_face_is_flawed)
