@@ -8,8 +8,7 @@
 namespace tetrace::openmp {
 
 /// Traces what this thread takes of a job's tiles. rays: the quads of given rays, empty for task trace. output: of the
-/// whole job, words_per_ray() per ray, row after row; of
-/// task tally then two words per tet.
+/// whole job, words_per_ray() per ray, row after row; of task tally then two words per tet.
 using RunFunction = void(const PackedScene& scene, std::span<const Quad> rays, const TraceJob& job,
                          std::span<std::uint32_t> output, SharedTiles& shared, unsigned tile_height);
 

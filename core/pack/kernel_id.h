@@ -55,7 +55,8 @@ inline constexpr auto enum_names<Schedule> = names_up_to<Schedule::pipeline>("ti
     return schedule == Schedule::tiles || schedule == Schedule::persistent;
 }
 /// What a kernel does: it traces the primary rays of an image, traces given rays, searches the exit face of a single
-/// tet for each given ray, or crosses every tet on given rays (core/rays/segments.h).
+/// tet for each given ray, or crosses every tet on given rays (core/rays/segments.h), for task tally with the sum of
+/// the lengths in each tet.
 enum class Task { trace, rays, search, segments, tally };
 template <>
 inline constexpr auto enum_names<Task> = names_up_to<Task::tally>("trace", "rays", "search", "segments", "tally");

@@ -1,7 +1,7 @@
 // Task segments: every tet that a given ray crosses, from where it enters the domain, or from its origin, to where it
 // leaves the domain (docs/spec/volume.md). Task tally: the same, and for each tet the sum of the lengths of all rays
-// inside it. The walk passes through occlusive faces. It is a method's own: tets, and so
-// their hash, are the same on all layouts.
+// inside it. The walk passes through occlusive faces. It is a method's own: tets, and so their hash, are the same on
+// all layouts.
 #ifndef TETRACE_KERNELS_WALKS_SEGMENTS_H
 #define TETRACE_KERNELS_WALKS_SEGMENTS_H
 
