@@ -126,14 +126,14 @@ KERNEL_FN Crossing entering_tet(SceneView scene, Ray ray, uint half_face, Crossi
 }
 
 #ifdef WALKS_PATHS
-// Takes back the lengths of a walk that begins anew: of as many tets as it has left, from its beginning on.
-KERNEL_FN void take_back(SceneView scene, Ray ray, uint stretch, LENGTH_SUMS sums, Crossing begin, uint crossings)
+// Takes back the lengths of a walk that begins anew: of the first `count` tets, those that it has left.
+KERNEL_FN void take_back(SceneView scene, Ray ray, uint stretch, LENGTH_SUMS sums, Crossing begin, uint count)
 {
     Crossing at = begin;
     for (;;) {
         at = leaving_tet(scene, ray, stretch, sums, true, at);
         uint half_face = opposite_half_face(scene, at.tet, at.face);
-        if (half_face == NO_HALF_FACE || at.sum.crossings >= crossings) break;
+        if (half_face == NO_HALF_FACE || at.sum.crossings >= count) break;
         at = entering_tet(scene, ray, half_face, at);
     }
 }
