@@ -86,7 +86,9 @@ TEST(Tally, of_exact_rays_is_the_same_within_its_bound)
             for (std::size_t tet = 0; tet < tally.size(); ++tet) {
                 const ExactLength& own = exact[tets.mesh_of_packed()[tet]];
                 EXPECT_NEAR(length_of(tally[tet]), own.length, own.bound) << name_of(kernel) << " tet " << tet;
-                if (!are_hard) EXPECT_LT(own.bound, own.length / 16) << "tet " << tet << ": the bound shows nothing";
+                if (!are_hard) {
+                    EXPECT_LT(own.bound, own.length / 16) << "tet " << tet << ": the bound shows nothing";
+                }
             }
         }
     }
