@@ -163,7 +163,7 @@ double Budget::Entry::launches_s() const
     return views_left * view_s + runs * parts * (samples * each_s + (views_per_sample > 1 ? latencies * pass_s : 0));
 }
 
-bool Budget::Entry::is_beside(const Entry& other) const
+bool Budget::Entry::is_in_group_of(const Entry& other) const
 {
     return row->scene == other.row->scene && row->key.rays == other.row->key.rays;
 }
@@ -238,7 +238,7 @@ void Budget::fit(double affordable_s)
 bool Budget::is_spare(const Entry& entry) const
 {
     const auto is_faster = [&](const Entry& other) {
-        if (!is_alive(*other.row) || !other.is_beside(entry) ||
+        if (!is_alive(*other.row) || !other.is_in_group_of(entry) ||
             other.row->key.kernel.structure != entry.row->key.kernel.structure)
             return false;
         return need_s(other) < need_s(entry) || (need_s(other) == need_s(entry) && &other < &entry);
@@ -260,9 +260,9 @@ bool Budget::skip_last_group()
     const auto is_left = [](const Entry& entry) { return is_alive(*entry.row); };
     const auto first = std::ranges::find_if(entries_, is_left);
     const auto last = std::find_if(entries_.rbegin(), entries_.rend(), is_left);
-    if (first == entries_.end() || first->is_beside(*last)) return false;
+    if (first == entries_.end() || first->is_in_group_of(*last)) return false;
     for (Entry& entry : entries_)
-        if (entry.is_beside(*last) && is_alive(*entry.row)) skip(entry);
+        if (entry.is_in_group_of(*last) && is_alive(*entry.row)) skip(entry);
     return true;
 }
 

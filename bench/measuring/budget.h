@@ -79,14 +79,14 @@ private:
 
         [[nodiscard]] double launches_s() const;
         /// The same scene and kind of rays.
-        [[nodiscard]] bool is_beside(const Entry& other) const;
+        [[nodiscard]] bool is_in_group_of(const Entry& other) const;
     };
 
     void plan(std::vector<RowRun>& rows, const Entry& samples, std::size_t first_view, bool view_by_view);
     [[nodiscard]] double need_s(const Entry& entry) const;
     [[nodiscard]] double needed_s(bool by_references_only = false) const;
     [[nodiscard]] std::size_t alive() const;
-    /// Whether a faster row of its structure is beside it, so that a comparison does without it.
+    /// Whether its scene and kind of rays have a faster row of its structure, so that a comparison does without it.
     [[nodiscard]] bool is_spare(const Entry& entry) const;
     template <class Is>
     [[nodiscard]] Entry* slowest(const Is& is);

@@ -52,7 +52,7 @@ struct ChosenDefect {
 /// The words of items 0 to items - 1.
 [[nodiscard]] std::vector<std::uint32_t> expected_words(const Defect& defect, std::uint32_t items);
 
-/// The items whose word is neither the expected one nor a flushed one; all of them if there is not a word for each.
+/// The items whose word is neither the expected one nor a flushed one; all of them if the numbers of words differ.
 [[nodiscard]] std::vector<std::uint32_t> wrong_items(const Defect& defect, std::uint32_t items,
                                                      std::span<const std::uint32_t> words);
 
