@@ -55,7 +55,7 @@ std::string score_sentence(const Workload* workload, const std::vector<Score>& s
         if (!is_emulated(score)) ++reasons[score.reason];
     const auto usual = std::ranges::max_element(reasons, {}, [](const auto& reason) { return reason.second; });
     return usual == reasons.end() ? "none: only emulated devices ran."
-                                  : fmt::format("none: {} (the usual reason).", usual->first);
+                                  : fmt::format("none; most often because {}.", usual->first);
 }
 
 constexpr std::size_t max_ratios = 3; // more are means

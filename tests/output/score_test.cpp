@@ -209,3 +209,13 @@ TEST(Brief, is_one_screen_with_five_rows_a_score_what_is_compared_and_trust)
         longest = std::max(longest, end - at);
     EXPECT_LE(longest, 80u) << text;
 }
+
+TEST(Brief, says_of_a_missing_score_what_most_kernels_lack)
+{
+    ResultFile file = read_result(TETRACE_RESULTS "/amd-epyc-zen5-2-cores/2026-11-27-005fd50.json");
+    auto& rows = file.json.at("tetrace").at("rows");
+    rows.erase(std::remove_if(rows.begin(), rows.end(), [](const auto& row) { return row.at("scene") == "atrium"; }),
+               rows.end());
+    const std::string text = run_again(file, true).sheet.text({.width = 80});
+    EXPECT_TRUE(contains(text, "Score     none; most often because 1 of 3 rows are missing.")) << text;
+}
