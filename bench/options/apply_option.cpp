@@ -116,8 +116,8 @@ ApplyOption set_out()
 {
     return {[](Options& options, const std::string& text) {
                 options.out = named_file("--out", text);
-                const bool is_result =
-                    options.verb != Verb::render && options.verb != Verb::report && options.verb != Verb::dump;
+                const bool is_result = options.verb != Verb::render && options.verb != Verb::report &&
+                                       options.verb != Verb::page && options.verb != Verb::dump;
                 if (is_result && text == "-") options.out.reset();
             },
             {},

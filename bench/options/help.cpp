@@ -278,6 +278,14 @@ const VerbHelp verb_help[] = {
      "  tetrace report results/ --out campaign.html\n"
      "  tetrace report gpu.json cpu.json --image bunny-0-normals.png,bunny-0-steps.png\n"
      "  tetrace report before.json after.json --charts figures\n"},
+    {Verb::page, "write a page that traces in a browser, by WebGPU",
+     "Writes one HTML file that traces the scenes on any GPU that a browser offers: open it, from a file or from a web "
+     "server, and press Start. It compares every ray's answer with openmp's, which this verb has verified, bit for "
+     "bit, then measures for ten seconds, draws, and offers the result as JSON. It loads nothing. Each --layout is a "
+     "row: half32, tet64, tet80, bvh2, bvh4, cwbvh and the other layouts of tetrace's own. Default: half32 and bvh2 on "
+     "the scene cubes. docs/browser.md has more.",
+     "  tetrace page\n"
+     "  tetrace page --scene cubes,banana --layout half32,tet64,bvh2,cwbvh --size 256 --out page.html\n"},
     {Verb::merge, "make one result from the shards of a run",
      "Reads the results that 'bench', 'check' or 'reproduce' wrote with --shard, each with its journal (FILE.journal) "
      "next to it, and makes the result of the whole run: the same counts, verdicts and hashes as without shards, and "

@@ -27,7 +27,7 @@ inline constexpr unsigned sharing = measuring | bit(Verb::reproduce);
 inline constexpr unsigned tracing = measuring | bit(Verb::render) | bit(Verb::trace);
 inline constexpr unsigned reproducing = tracing | bit(Verb::reproduce);
 inline constexpr unsigned selecting = tracing | bit(Verb::inspect);
-inline constexpr unsigned building = bit(Verb::build) | bit(Verb::dump) | reproducing;
+inline constexpr unsigned building = bit(Verb::build) | bit(Verb::dump) | bit(Verb::page) | reproducing;
 inline constexpr unsigned reporting = measuring | bit(Verb::build) | bit(Verb::devices) | bit(Verb::scenes) |
                                       bit(Verb::reproduce) | bit(Verb::inspect) | bit(Verb::trace) |
                                       bit(Verb::compare) | bit(Verb::show) | bit(Verb::merge) | bit(Verb::judge);

@@ -183,7 +183,7 @@ std::vector<OptionRow> row_options()
              "for its own ray tracing). Default: all of the structures kept, and rt on GPUs that have it. On emulated "
              "devices rt is slow: it is a row there only if it is named here, in a filter, or by '--schedule "
              "pipeline'.",
-         reproducing | selecting | bit(Verb::dump), true,
+         reproducing | selecting | bit(Verb::dump) | bit(Verb::page), true,
          append("--layout", &Options::layouts, kernels_have(&KernelId::layout)),
          usual_for(~(bit(Verb::check) | bit(Verb::render) | bit(Verb::reproduce)),
                    "memory layout, for example tet80 or bvh2")},
@@ -271,8 +271,8 @@ std::vector<OptionRow> ray_options()
          usual_for(bit(Verb::render) | bit(Verb::reproduce), "views of the set: 0,3,10-20 or 0-1281:64")},
         {"Rays", "--size", "WxH",
          "Image size in pixels, one ray each; N means NxN. 'bench' accepts a list, for example 256,512,1024, and "
-         "measures each row at each size. Default: 1024x1024; for 'check', 'trace' and 'dump' 256x256, for 'reproduce "
-         "rivals' and 'ladder' 512x512.",
+         "measures each row at each size. Default: 1024x1024; for 'check', 'trace', 'dump' and 'page' 256x256, for "
+         "'reproduce rivals' and 'ladder' 512x512.",
          with_rays, true,
          [](Options& o, const std::string& v) {
              std::tie(o.width, o.height) = parse_size("--size", v);

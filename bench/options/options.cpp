@@ -226,7 +226,7 @@ Options defaults_of(Verb verb)
     Options options;
     options.verb = verb;
     if (verb != Verb::bench) options.budget_s = std::numeric_limits<double>::infinity();
-    if (verb == Verb::check || verb == Verb::trace || verb == Verb::dump)
+    if (verb == Verb::check || verb == Verb::trace || verb == Verb::dump || verb == Verb::page)
         options.width = options.height = 256; // seconds for the scene cubes on all devices
     if (verb == Verb::trace || verb == Verb::dump) options.views = "0";
     if (verb != Verb::reproduce) return options;

@@ -34,6 +34,7 @@ enum class Verb {
     compare,
     show,
     report,
+    page,
     merge,
     help,
     version
@@ -42,7 +43,7 @@ template <>
 inline constexpr auto enum_names<Verb> = names_up_to<Verb::version>("devices", "scenes", "build", "bench", "check",
                                                                     "render", "reproduce", "inspect", "trace", "dump",
                                                                     "rays", "judge", "compare", "show", "report",
-                                                                    "merge", "help", "version");
+                                                                    "page", "merge", "help", "version");
 
 /// The form of a result.
 enum class Format { table, json, csv, markdown };

@@ -48,13 +48,15 @@ std::vector<OptionRow> output_options()
          reporting, false, set_choice<Format>("--format", &Options::format),
          usual_for(~(tracing | bit(Verb::reproduce)), "{}")},
         {"Output", "--out", "PATH",
-         "Write to the file PATH: the result, the picture of 'render', the page of 'report'. For 'dump' it is the "
+         "Write to the file PATH: the result, the picture of 'render', the page of 'report' or 'page'. For 'dump' it "
+         "is the "
          "folder of the files, and is required, as is the .npy file of 'rays'. Without --format, its extension sets a "
          "result's format: .json, .csv, "
          ".md, or .txt for the table; the table still goes to standard output. '-' means standard output instead of a "
-         "file. -o is short for it. Default: none; of 'render' the current folder, of 'report' report.html.",
-         reporting | bit(Verb::render) | bit(Verb::report) | bit(Verb::dump) | bit(Verb::rays), false, set_out(),
-         usual_for(every_verb, "where to write; -o is short for it")},
+         "file. -o is short for it. Default: none; of 'render' the current folder, of 'report' report.html, of 'page' "
+         "tetrace.html.",
+         reporting | bit(Verb::render) | bit(Verb::report) | bit(Verb::page) | bit(Verb::dump) | bit(Verb::rays), false,
+         set_out(), usual_for(every_verb, "where to write; -o is short for it")},
         {"Output", "--columns", "LIST",
          "Print only these columns, after the first one, in the tables that have them, named as in CSV and JSON: "
          "mrays_per_s,spread. An unknown name prints the list of valid ones. Default: all, or on a terminal the "

@@ -40,17 +40,6 @@ std::string chunk(const std::string& type, const std::string& data)
     return word_bytes(static_cast<std::uint32_t>(data.size())) + content + word_bytes(static_cast<std::uint32_t>(sum));
 }
 
-std::string deflated(const std::string& plain)
-{
-    std::string packed(compressBound(static_cast<uLong>(plain.size())), '\0');
-    uLongf size = packed.size();
-    if (compress(reinterpret_cast<Bytef*>(packed.data()), &size, zlib_bytes(plain), static_cast<uLong>(plain.size())) !=
-        Z_OK)
-        throw Error(ErrorKind::internal, "png_bytes: zlib could not compress the pixels");
-    packed.resize(size);
-    return packed;
-}
-
 /// A PNG file's bytes: colour type 2, 8 bits a channel, not interlaced.
 /// rgb: 3 width height bytes of sRGB, row after row from the top. Throws Error{internal} if their number differs.
 /// Source: Portable Network Graphics (PNG) Specification, W3C, third edition.
@@ -144,6 +133,17 @@ Html shown(const Png& png, const std::string& name)
 }
 
 } // namespace
+
+std::string deflated(const std::string& plain)
+{
+    std::string packed(compressBound(static_cast<uLong>(plain.size())), '\0');
+    uLongf size = packed.size();
+    if (compress(reinterpret_cast<Bytef*>(packed.data()), &size, zlib_bytes(plain), static_cast<uLong>(plain.size())) !=
+        Z_OK)
+        throw Error(ErrorKind::internal, "deflated: zlib could not compress");
+    packed.resize(size);
+    return packed;
+}
 
 Png read_picture(const std::filesystem::path& path)
 {

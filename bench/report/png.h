@@ -13,6 +13,9 @@ struct Png {
     std::uint32_t width = 0, height = 0;
 };
 
+/// In the format of zlib (RFC 1950).
+[[nodiscard]] std::string deflated(const std::string& plain);
+
 /// A PNG file unchanged; a PPM file (P6, 255 levels, no comments: written on machines without OpenImageIO) converted to
 /// PNG.
 /// Throws Error{missing} for a missing file, Error{invalid_input} for one that is neither, or larger than 64 MiB.

@@ -27,6 +27,7 @@ int judge_command(const Options& options);
 int compare_command(const Options& options);
 int show_command(const Options& options);
 int report_command(const Options& options);
+int page_command(const Options& options);
 int merge_command(const Options& options);
 
 /// Opens, verifies and times the rows of `bench`, or of another run like it, and measures their devices.

@@ -52,8 +52,9 @@ int end_interrupted()
 std::string words_when_begun(const Options& options)
 {
     const bool is_long = options.verb == Verb::bench || options.verb == Verb::check || options.verb == Verb::render ||
-                         options.verb == Verb::build || options.verb == Verb::inspect || options.verb == Verb::trace ||
-                         options.verb == Verb::reproduce || options.verb == Verb::rays || options.verb == Verb::judge;
+                         options.verb == Verb::page || options.verb == Verb::build || options.verb == Verb::inspect ||
+                         options.verb == Verb::trace || options.verb == Verb::reproduce || options.verb == Verb::rays ||
+                         options.verb == Verb::judge;
     if (!is_long) return {};
     const char* kept = options.verb == Verb::build    ? "scenes that were built before are in the cache"
                        : options.verb == Verb::render ? "pictures that were written before are whole"
@@ -78,6 +79,7 @@ int run_verb(const Options& options)
     case Verb::render: return render_command(options);
     case Verb::reproduce: return reproduce_command(options);
     case Verb::inspect: return inspect_command(options);
+    case Verb::page: return page_command(options);
     case Verb::trace: return trace_command(options);
     case Verb::dump: return dump_command(options);
     case Verb::rays: return rays_command(options);

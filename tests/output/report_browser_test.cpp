@@ -1,8 +1,7 @@
 // The page in Chromium, if there is one: it opens without a message, and every chart has its data.
 #include "tests/output/report_fixture.h"
+#include "tests/support/chromium.h"
 
-#include <cstdlib>
-#include <fmt/format.h>
 #include <set>
 #include <string>
 
@@ -11,43 +10,14 @@ using namespace tetrace::test;
 
 namespace {
 
-std::string find_chromium()
-{
-    for (const char* const name : {"chromium", "chromium-headless-shell", "google-chrome", "chrome"})
-        if (std::system(fmt::format("command -v {} > /dev/null 2>&1", name).c_str()) == 0) return name;
-    return {};
-}
-
-/// What a browser makes of a page: its document as text, and what it wrote to its console.
-struct Browsed {
-    std::string document, console;
-};
-
 class ReportInChromium : public ReportPage {
 protected:
     void SetUp() override
     {
-        browser_ = find_chromium();
-        if (browser_.empty())
+        if (find_chromium().empty())
             GTEST_SKIP() << "no Chromium (Debian's package chromium-headless-shell): the page was opened by nobody";
     }
-    Browsed browse(const std::string& page)
-    {
-        write_file(folder_ / "page.html", page);
-        const auto document = folder_ / "document", log = folder_ / "log";
-        const std::string command = fmt::format(
-            "HOME='{0}' timeout 60 {1} --headless --no-sandbox --disable-gpu --disable-dev-shm-usage "
-            "--user-data-dir='{0}/profile' --enable-logging=stderr --dump-dom 'file://{0}/page.html' > '{2}' 2> '{3}'",
-            folder_.path().string(), browser_, document.string(), log.string());
-        EXPECT_EQ(std::system(command.c_str()), 0) << read_text(log);
-        Browsed browsed{read_text(document), {}};
-        const std::string text = read_text(log);
-        for (std::size_t at = text.find("CONSOLE"); at != std::string::npos; at = text.find("CONSOLE", at + 1))
-            browsed.console += text.substr(at, text.find('\n', at) - at) + "\n";
-        return browsed;
-    }
-
-    std::string browser_;
+    Browsed browse(const std::string& page) { return test::browse(folder_.path(), page); }
 };
 
 } // namespace

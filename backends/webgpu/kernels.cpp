@@ -1,0 +1,36 @@
+#include "backends/webgpu/kernels.h"
+
+#include "backends/embedded.h"
+#include "core/base/error.h"
+
+namespace tetrace::webgpu {
+
+std::span<const EmbeddedKernel> embedded_kernels();
+
+namespace {
+
+std::string_view text_named(std::string_view name)
+{
+    const EmbeddedKernel* const found = find_kernel(embedded_kernels(), name);
+    return found == nullptr ? std::string_view() : found->text();
+}
+
+} // namespace
+
+std::string_view kernel_text(const KernelId& kernel)
+{
+    if (kernel.math != MathMode::exact || kernel.task != Task::trace) return {};
+    return text_named(std::string(name_of(kernel.method)) + "_" + std::string(name_of(kernel.layout)));
+}
+
+std::string_view probe_text()
+{
+    return text_named("probe");
+}
+
+std::string_view page_text()
+{
+    return text_named("page");
+}
+
+} // namespace tetrace::webgpu

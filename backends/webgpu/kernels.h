@@ -1,0 +1,22 @@
+#pragma once
+
+#include "core/pack/kernel_id.h"
+
+#include <string>
+#include <string_view>
+
+namespace tetrace::webgpu {
+
+/// Binding of the launch's words, LaunchWords of kernel.h, in every kernel; outputs have OUTPUT_BINDING.
+inline constexpr unsigned launch_binding = TETRACE_WEBGPU_LAUNCH_BINDING;
+
+/// The WGSL of a kernel in exact mode for task trace; empty if the build has none of that method and layout.
+[[nodiscard]] std::string_view kernel_text(const KernelId& kernel);
+
+/// The WGSL of the self-test.
+[[nodiscard]] std::string_view probe_text();
+
+/// The page that runs kernels in a browser (page.html), with "@DATA@" in place of its data.
+[[nodiscard]] std::string_view page_text();
+
+} // namespace tetrace::webgpu

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "bench/browser/answer_hash.h"
+#include "core/device/launch.h"
+#include "core/pack/kernel_id.h"
+#include "core/pack/packed_scene.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tetrace {
+
+/// A view, as a page traces and judges it.
+struct PageView {
+    std::uint32_t number = 0; ///< in the camera set
+    LaunchParams launch = {};
+    AnswerHashes answers; ///< verified
+};
+
+/// A kernel with its packed scene, which the caller keeps alive, and its views.
+struct PageKernel {
+    std::string name; ///< "cdt project half32"
+    KernelId kernel;
+    const PackedScene* packed = nullptr;
+    std::vector<PageView> views;
+};
+
+struct PageScene {
+    std::string name;
+    std::string trace_command; ///< "tetrace trace ..." of its rays, without view and pixel
+    std::uint64_t triangles = 0, tets = 0;
+    std::uint32_t width = 0, height = 0;
+    std::vector<PageKernel> kernels;
+};
+
+/// Tiles of the launches of PageView: TILE_WIDTH wide, and this high.
+inline constexpr unsigned page_tile_height = 8;
+
+/// Whether a page can have the kernel.
+[[nodiscard]] bool has_page_kernel(const KernelId& kernel);
+
+/// One HTML file that traces the scenes by WebGPU in any browser, compares every ray's answer with the hashes, and
+/// measures. It loads nothing. Throws Error{driver} if openmp's self-test cannot be run.
+[[nodiscard]] std::string browser_page(const std::vector<PageScene>& scenes);
+
+} // namespace tetrace

@@ -1,0 +1,111 @@
+// The page of `tetrace page` in Chromium, whose GPU is SwiftShader, which emulates one.
+#include "bench/browser/browser_page.h"
+#include "core/device/launch.h"
+#include "tests/support/bvh_scene.h"
+#include "tests/support/chromium.h"
+#include "tests/support/given_scene.h"
+#include "tests/support/temporary_folder.h"
+
+#include <gtest/gtest.h>
+#include <string>
+#include <utility>
+
+using namespace tetrace;
+using namespace tetrace::test;
+
+namespace {
+
+constexpr const char* with_webgpu = "--enable-unsafe-webgpu";
+
+/// A view of the cubes in a layout, answered by openmp.
+struct PageCase {
+    Scene scene = make_cubes(9);
+    PackedScene packed;
+    PageScene page;
+
+    explicit PageCase(const KernelId& kernel, const std::string& name, std::uint32_t size = 24)
+        : packed(kernel.structure == Structure::bvh ? make_bvh_scene(scene.mesh, kernel.layout)
+                                                    : pack(scene, kernel.layout, TetOrder::chains))
+    {
+        TraceJob job;
+        job.view = make_view(make_cameras(CameraSet::smoke, scene.mesh).front(), size, size);
+        job.width = job.height = size;
+        job.start_tet = NO_TET;
+        job.max_steps = 10'000;
+        std::vector<Hit> hits(job.rays());
+        const auto session = openmp_backend().open(0, kernel, {&scene.mesh, &packed}, {.threads = 2});
+        static_cast<void>(session->trace(job, hits));
+        page = {"cubes", "tetrace trace --scene cubes", scene.mesh.triangles.size(), packed.tet_count, size, size, {}};
+        page.kernels.push_back({name, kernel, &packed, {}});
+        page.kernels.back().views.push_back(
+            {7, launch_params(job, domain_of(packed), page_tile_height, 31), answer_hashes(hits)});
+    }
+    PageCase(const PageCase&) = delete;
+    PageCase& operator=(const PageCase&) = delete;
+};
+
+const KernelId half32 = {.method = Method::project, .layout = Layout::half32};
+const KernelId bvh2 = {.structure = Structure::bvh, .method = Method::single, .layout = Layout::bvh2};
+
+class PageInChromium : public testing::Test {
+protected:
+    void SetUp() override
+    {
+        if (find_chromium().empty())
+            GTEST_SKIP() << "no Chromium (Debian's package chromium-headless-shell): the page was opened by nobody";
+    }
+    Browsed run(const std::vector<PageScene>& scenes, const char* options = with_webgpu)
+    {
+        return browse(folder_.path(), browser_page(scenes), "?start&seconds=0", options);
+    }
+
+    TemporaryFolder folder_;
+};
+
+} // namespace
+
+TEST_F(PageInChromium, verifies_and_measures_each_row)
+{
+    PageCase tets(half32, "cdt project half32"), bvh(bvh2, "bvh bvh2");
+    tets.page.kernels.push_back(bvh.page.kernels.front());
+    const Browsed browsed = run({tets.page});
+    EXPECT_TRUE(contains(browsed.document, "data-verdict=\"conforms\"")) << browsed.document << browsed.console;
+    for (const char* const part : {"Self-test: exact",
+                                   "<td>cdt project half32</td><td>cubes</td><td>576</td>"
+                                   "<td class=\"good\">bit-exact</td>",
+                                   "<td>bvh bvh2</td>", "of 2 rows has the right answer"})
+        EXPECT_TRUE(contains(browsed.document, part)) << part << "\n" << browsed.console;
+    EXPECT_TRUE(contains(browsed.document, "%22samples_s%22")) << "the result to save";
+}
+
+TEST_F(PageInChromium, names_the_first_ray_that_is_wrong)
+{
+    PageCase tets(half32, "cdt project half32");
+    // The last exit of each record becomes the domain's boundary.
+    for (std::size_t quad = 1; quad < tets.packed.tets.size(); quad += HALF32_QUADS)
+        tets.packed.tets[quad].z = NO_HALF_FACE;
+    const Browsed browsed = run({tets.page});
+    EXPECT_TRUE(contains(browsed.document, "data-verdict=\"failed\"")) << browsed.document;
+    EXPECT_TRUE(contains(browsed.document, " rays wrong</td>")) << browsed.document;
+    EXPECT_TRUE(contains(browsed.document, "cdt project half32, cubes, view 7: pixel ")) << browsed.document;
+    EXPECT_TRUE(contains(browsed.document, "tetrace trace --scene cubes --view 7 --pixel ")) << browsed.document;
+}
+
+TEST_F(PageInChromium, says_what_to_do_without_webgpu)
+{
+    PageCase tets(half32, "cdt project half32");
+    const Browsed browsed = run({tets.page}, "--disable-features=WebGPU,WebGPUService");
+    EXPECT_TRUE(contains(browsed.document, "data-verdict=\"error\"")) << browsed.document;
+    EXPECT_TRUE(contains(browsed.document, "Stopped by an error: ")) << browsed.document;
+}
+
+TEST(BrowserPage, has_each_kernel_of_ours_and_no_markup_from_its_data)
+{
+    PageCase tets(half32, "</script><b>");
+    const std::string page = browser_page({tets.page});
+    EXPECT_FALSE(contains(page, "</script><b>"));
+    EXPECT_TRUE(contains(page, "\\u003c/script>\\u003cb>"));
+    EXPECT_FALSE(contains(page, "@DATA@"));
+    EXPECT_TRUE(has_page_kernel(bvh2));
+    EXPECT_FALSE(has_page_kernel({.structure = Structure::bvh, .method = Method::single, .layout = Layout::embree}));
+}
