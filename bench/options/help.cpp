@@ -282,7 +282,7 @@ const VerbHelp verb_help[] = {
      "Writes one HTML file that traces the scenes on any GPU that a browser offers: open it, from a file or from a web "
      "server, and press Start. It compares every ray's answer with openmp's, which this verb has verified, bit for "
      "bit, then measures for ten seconds, draws, and offers the result as JSON. It loads nothing. Each --layout is a "
-     "row: half32, tet64, tet80, bvh2, bvh4, cwbvh and the other layouts of tetrace's own. Default: half32 and bvh2 on "
+     "row: half32, tet64, tet80, bvh2, bvh4, cwbvh and the other layouts of tetrace's own. Default: tet64 and bvh2 on "
      "the scene cubes. docs/browser.md has more.",
      "  tetrace page\n"
      "  tetrace page --scene cubes,banana --layout half32,tet64,bvh2,cwbvh --size 256 --out page.html\n"},

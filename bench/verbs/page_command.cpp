@@ -22,7 +22,7 @@ std::vector<RowKey> page_rows(const Options& options, const std::string& label)
 {
     Options wanted = options;
     wanted.backends = {reference_backend().name()};
-    if (wanted.layouts.empty()) wanted.layouts = {Layout::half32, Layout::bvh2};
+    if (wanted.layouts.empty()) wanted.layouts = {Layout::tet64, Layout::bvh2};
     std::vector<RowKey> rows = select_rows(wanted, {label});
     std::erase_if(
         rows, [](const RowKey& key) { return key.kernel.schedule != Schedule::tiles || !has_page_kernel(key.kernel); });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/base/files.h"
+#include "tests/support/temporary_folder.h"
 
 #include <cstdlib>
 #include <filesystem>

@@ -86,6 +86,16 @@ Expression Parser::expression(bool precise)
     return accept("?") ? choice(value, precise) : value;
 }
 
+Expression Parser::combined(const std::string& symbol, const Expression& left, const Expression& right,
+                            bool precise) const
+{
+    try {
+        return binary(symbol, left, right, precise);
+    } catch (const std::invalid_argument& error) {
+        fail(error.what());
+    }
+}
+
 Expression Parser::choice(const Expression& condition, bool precise)
 {
     if (condition.type != Type{"bool"}) fail("the condition of ? is a " + condition.type.name);
@@ -113,11 +123,7 @@ Expression Parser::binary_expression(std::size_t level, bool precise)
     while (peek().kind == TokenKind::symbol && std::ranges::count(precedence()[level], peek().text) != 0) {
         const std::string symbol = take();
         const Expression right = binary_expression(level + 1, precise);
-        try {
-            left = binary(symbol, left, right, precise);
-        } catch (const std::invalid_argument& error) {
-            fail(error.what());
-        }
+        left = combined(symbol, left, right, precise);
     }
     return left;
 }

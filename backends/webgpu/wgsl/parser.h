@@ -55,6 +55,8 @@ protected:
 
     /// precise: of a precise local, whose value is kept.
     Expression expression(bool precise);
+    /// binary() of expression.h; what does not fit is refused here.
+    Expression combined(const std::string& symbol, const Expression& left, const Expression& right, bool precise) const;
     /// A value that a statement assigns to: a local, a member or an element.
     Expression place();
     [[nodiscard]] const Local* find_local(const std::string& name) const;

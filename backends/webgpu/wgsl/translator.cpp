@@ -282,7 +282,7 @@ private:
         if (value.type != target.type && symbol != "<<=" && symbol != ">>=")
             fail("a " + value.type.name + " is assigned to a " + target.type.name);
         if (symbol == "=") return given_to(target.text + " = ", value, depth);
-        const Expression sum = binary(symbol.substr(0, symbol.size() - 1), target, value, precise);
+        const Expression sum = combined(symbol.substr(0, symbol.size() - 1), target, value, precise);
         return given_to(target.text + " = ", precise ? kept(sum) : sum, depth);
     }
 
