@@ -130,10 +130,8 @@ bool MeshSceneLoader::read_cached()
         loaded_.messages.push_back(
             fmt::format("reading scene {}: foreign file: {}; built again", file_.string(), difference));
     const BuildInfo& info = loaded_.scene.build;
-    if (difference.empty() && !info.optimised.reason.empty())
-        loaded_.messages.push_back(loaded_.scene.source_tets.empty()
-                                       ? fmt::format("{}: the tets are TetGen's: {}", label_, info.optimised.reason)
-                                       : fmt::format("{}: {}", label_, info.optimised.reason));
+    if (difference.empty() && !info.optimised.reason.empty() && loaded_.scene.source_tets.empty())
+        loaded_.messages.push_back(fmt::format("{}: the tets are TetGen's: {}", label_, info.optimised.reason));
     const RepairInfo& repair = info.repair;
     if (difference.empty() && repair.crossing_pairs > 0)
         loaded_.messages.push_back(fmt::format(

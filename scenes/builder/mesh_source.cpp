@@ -187,9 +187,14 @@ void MeshSource::finish_tets(MeshSoup& soup)
     triangles_.clear(); // their vertices need not be tets'
     corners_.clear();
     place_vertices(soup);
-    for (TetCorners& tet : tets_) { // those of a file may be either way round
-        const auto side = [&](std::size_t i) { return positions_[tet[i]] - positions_[tet[0]]; };
-        if (dot(cross(side(1), side(2)), side(3)) < 0) std::swap(tet[0], tet[1]);
+    for (std::size_t i = 0; i < tets_.size(); ++i) {
+        TetCorners& tet = tets_[i];
+        const auto side = [&](std::size_t corner) { return positions_[tet[corner]] - positions_[tet[0]]; };
+        const double volume = dot(cross(side(1), side(2)), side(3));
+        if (volume == 0)
+            fail(fmt::format("tet {}", source_tets_[i].number), "it is flat",
+                 "remove flat tets from the mesh, for example with Gmsh's or TetGen's optimiser");
+        if (volume < 0) std::swap(tet[0], tet[1]); // those of a file may be either way round
     }
     soup.tets = std::move(tets_);
     soup.source_tets = std::move(source_tets_);

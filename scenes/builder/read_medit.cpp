@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace tetrace {
 namespace {
 
@@ -28,7 +30,7 @@ void read_medit_elements(WordReader& words, const char* element, const char* ele
     for (std::size_t i = 1; i <= count; ++i) {
         words.begin(fmt::format("{} {}", element, i));
         for (std::int64_t& index : indices)
-            index = words.integer() - 1;
+            index = std::max<std::int64_t>(words.integer(), 0) - 1;
         add(static_cast<std::int64_t>(i), indices, words.integer());
     }
 }

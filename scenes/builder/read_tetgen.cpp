@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace tetrace {
@@ -73,7 +74,7 @@ void read_tetgen(MeshSource& source)
     read_numbered(words, "tet", count, size, [&](std::int64_t number, const std::vector<std::string_view>& line) {
         std::vector<std::int64_t> indices;
         for (std::size_t i = 0; i < 4; ++i)
-            indices.push_back(words.integer_of(line[i]) - first);
+            indices.push_back(std::max<std::int64_t>(words.integer_of(line[i]), -1) - first);
         const std::int64_t region = line.size() > size ? region_of(words, line[size]) : 0;
         source.add_tet(indices, source.vertex_count(), {number, region}, words.place());
     });

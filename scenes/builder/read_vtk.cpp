@@ -83,13 +83,14 @@ private:
         words_.next();
         std::vector<std::int64_t> offsets(count);
         for (std::int64_t& offset : offsets)
-            offset = words_.integer();
+            if (offset = words_.integer(); offset < 0 || static_cast<std::uint64_t>(offset) > size)
+                words_.fail(fmt::format("an offset is {}, and there are {} corners", offset, size));
         if (words_.next() != "CONNECTIVITY") words_.fail("CONNECTIVITY is missing");
         words_.next();
         for (std::size_t i = 0; i + 1 < count; ++i) {
             words_.begin(fmt::format("cell {}", i));
             const std::int64_t corners = offsets[i + 1] - offsets[i];
-            if (corners < 0 || static_cast<std::uint64_t>(corners) > size) words_.fail("its offsets are wrong");
+            if (corners < 0) words_.fail("its offsets are wrong");
             add_corners(static_cast<std::size_t>(corners));
         }
     }

@@ -53,7 +53,9 @@ std::size_t WordReader::count(const std::string& elements, std::size_t min_bytes
 {
     const std::int64_t value = integer();
     if (value < 0) fail(fmt::format("a negative number of {}, {}", elements, value));
-    source_.require_room(elements, value, min_bytes);
+    const std::size_t most = bytes_ / min_bytes + 1;
+    if (static_cast<std::uint64_t>(value) > most)
+        fail(fmt::format("it announces {} {}, but {} bytes cannot hold more than {}", value, elements, bytes_, most));
     return static_cast<std::size_t>(value);
 }
 

@@ -13,7 +13,7 @@ namespace tetrace {
 /// being read, and the line.
 class WordReader {
 public:
-    WordReader(const MeshSource& source, std::string_view text) : source_(source), lines_(text) {}
+    WordReader(const MeshSource& source, std::string_view text) : source_(source), lines_(text), bytes_(text.size()) {}
 
     /// Of what comes next, for messages.
     void begin(std::string element) { element_ = std::move(element); }
@@ -48,6 +48,7 @@ public:
 private:
     const MeshSource& source_;
     LineReader lines_;
+    std::size_t bytes_;
     std::string element_ = "header";
     std::vector<std::string_view> words_;
     std::size_t at_ = 0;

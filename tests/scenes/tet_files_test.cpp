@@ -10,7 +10,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <numeric>
 #include <set>
+#include <sstream>
 
 using namespace tetrace;
 using namespace tetrace::test;
@@ -128,13 +131,13 @@ TEST_F(TetFiles, that_are_damaged_are_refused_with_place_and_line)
         {"a.msh", two_gmsh_2, "2.2 0", "2.2 1", {"binary", "-bin 0"}},
         {"a.msh", two_gmsh_2, "2.2 0", "4.0 0", {"version 4.0", "msh41"}},
         {"a.msh", two_gmsh_2, "7 4 2", "7 5 2", {"element 7 has type 5, which is not a tet"}},
-        {"a.msh", two_gmsh_2, "40 0 0 1", "3 0 0 1", {"node 4 of 5 (line 12)", "node 3 is there twice"}},
-        {"a.msh", two_gmsh_4, "9 3 2 40 5\n", "9 3 2\n", {"element 1 of block 3 (line 34)", "too few nodes"}},
+        {"a.msh", two_gmsh_2, "40 0 0 1", "3 0 0 1", {"node 4 of 5 (line 13)", "node 3 is there twice"}},
+        {"a.msh", two_gmsh_4, "9 3 2 40 5\n", "9 3 2\n", {"element 1 of block 3 (line 33)", "too few nodes"}},
         {"a.msh", two_gmsh_4, "$EndElements\n", "", {"ends inside it"}},
         {"a.vtk", two_vtk_2, "4 2 1 3 4", "4 2 1 3 7", {"cell 2 (line 12)", "none of the 5 vertices"}},
         {"a.vtk", two_vtk_2, "ASCII", "BINARY", {"(line 3)", "binary", "meshio ascii"}},
         {"a.vtk", two_vtk_2, "CELL_TYPES 3\n5\n10", "CELL_TYPES 3\n5\n12", {"cell 1 (line 11)", "type is 12"}},
-        {"a.vtk", two_vtk_5, "8 5 6", "8 5.5 6", {"array region (line 19)", "5.5 is not a whole number"}},
+        {"a.vtk", two_vtk_5, "8 5 6", "8 5.5 6", {"array region (line 22)", "5.5 is not a whole number"}},
         {"a.vtk", two_vtk_5, "0 3 7 11", "0 3 2 11", {"cell 1", "offsets are wrong"}},
         {"a.ele", two_elements, "2 4 1", "2 4 1", {"a.node, which cannot be read", "in one folder"}},
     };
@@ -153,7 +156,7 @@ TEST_F(TetFiles, whose_tets_overlap_or_are_flat_are_refused_by_number)
                          "tets 1, 2 and 3 share one face"));
     EXPECT_TRUE(contains(refusal(medit(corner + "0.1 0.1 0.1 0\n", "1 2 3 4 1\n2 3 4 5 1\n")),
                          "tets 1 and 2 are on the same side of their face"));
-    EXPECT_TRUE(contains(refusal(medit(corner + "1 1 0 0\n", "1 2 3 4 1\n2 3 1 5 1\n")), "tet 2 is flat or inverted"));
+    EXPECT_TRUE(contains(refusal(medit(corner + "1 1 0 0\n", "1 2 3 4 1\n2 3 1 5 1\n")), "tet 2: it is flat"));
     EXPECT_TRUE(contains(refusal(medit(corner + "0.33333333333 0.33333333333 0.33333333333 0\n", "2 3 4 5 1\n")),
                          "tet 1 is flat or inverted once its vertices are rounded"))
         << "the last vertex is below the others' plane, and above as floats";
@@ -171,6 +174,11 @@ TEST_F(TetFiles, are_in_the_scene_unchanged_and_come_back_from_each_format)
     // Cubes of six tets with holes in it, a cavity, and parts of several regions.
     const Scene cubes = make_cubes(6);
     export_tets(cubes, folder_ / "cubes.mesh");
+    export_tets(cubes, folder_ / "cubes.vtk");
+    const std::string vtk = read_text(folder_ / "cubes.vtk"), head = "SCALARS cost double 1\nLOOKUP_TABLE default\n";
+    std::istringstream costs(vtk.substr(vtk.find(head) + head.size()));
+    EXPECT_NEAR(std::accumulate(std::istream_iterator<double>(costs), {}, 0.0),
+                optimise(cubes.tets, {.effort = 0}, {}).report.cost_before, 1e-9);
     const MeshSoup all = read_mesh(folder_ / "cubes.mesh");
     ASSERT_EQ(all.tets.size(), cubes.tets.tets.size());
     std::string vertices, tets;
