@@ -78,11 +78,14 @@ private:
 std::uint64_t MeshSceneLoader::hash_mesh() const
 {
     Hasher hasher;
-    if (add_file(hasher, mesh_) == 0)
-        throw Error(ErrorKind::invalid_input,
-                    fmt::format("reading mesh {}: it is empty, no regular file, or may not be read", mesh_.string()));
     std::string extension = mesh_.extension().string();
     std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    fs::path file = mesh_;
+    if (extension == ".node") file.replace_extension(extension = ".ele"); // tets and vertices are in both
+    if (add_file(hasher, file) == 0)
+        throw Error(ErrorKind::invalid_input,
+                    fmt::format("reading mesh {}: it is empty, no regular file, or may not be read", file.string()));
+    if (extension == ".ele") add_file(hasher, file.replace_extension(".node"));
     if (extension == ".gltf") add_gltf_buffers(hasher, mesh_, file_bytes(mesh_).value_or(""));
     return hasher.hash();
 }
@@ -127,7 +130,7 @@ bool MeshSceneLoader::read_cached()
         loaded_.messages.push_back(
             fmt::format("reading scene {}: foreign file: {}; built again", file_.string(), difference));
     const BuildInfo& info = loaded_.scene.build;
-    if (difference.empty() && !info.optimised.reason.empty())
+    if (difference.empty() && !info.optimised.reason.empty() && loaded_.scene.source_tets.empty())
         loaded_.messages.push_back(fmt::format("{}: the tets are TetGen's: {}", label_, info.optimised.reason));
     const RepairInfo& repair = info.repair;
     if (difference.empty() && repair.crossing_pairs > 0)
@@ -311,7 +314,8 @@ LoadedScene load_mesh_scene(const SceneRequest& request, const fs::path& mesh, c
     throw Error(
         is_path ? ErrorKind::missing : ErrorKind::usage,
         fmt::format("scene {}: neither a name of the catalogue ({}) nor a file; give one of these names, or the "
-                    "path of a mesh (.ply, .obj, .off, .stl, .glb, .gltf) or of a .tet file{}",
+                    "path of a mesh (.ply, .obj, .off, .stl, .glb, .gltf; of tets: .mesh, .msh, .ele, .vtk) or of a "
+                    ".tet file{}",
                     name, fmt::join(names, ", "), did_you_mean(name, names)));
 }
 

@@ -234,6 +234,9 @@ void SceneReader::check_mesh(const Scene& scene) const
             if (vertex >= scene.mesh.vertices.size())
                 refuse("triangles",
                        fmt::format("triangle {} names vertex {} of {}", i, vertex, scene.mesh.vertices.size()));
+    if (scene.source_tets.size() > scene.tets.tets.size())
+        refuse("information", fmt::format("it has the numbers of {} tets, and there are {}", scene.source_tets.size(),
+                                          scene.tets.tets.size()));
     if (kind_ == SceneFileKind::whole)
         if (const auto defect = find_defect(scene.tets, scene.mesh.triangles.size())) refuse("tets", defect->what);
     if (scene_hash(scene) != header_.scene_hash) refuse("header", "the scene's hash is not the one that it states");

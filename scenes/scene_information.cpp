@@ -58,7 +58,8 @@ public:
         text = printable_text({rest_.data(), static_cast<std::size_t>(size)});
         rest_ = rest_.subspan(static_cast<std::size_t>(size));
     }
-    [[nodiscard]] bool finished() const { return good_ && rest_.empty(); }
+    [[nodiscard]] bool finished() const { return !good_ || rest_.empty(); }
+    [[nodiscard]] bool is_good() const { return good_; }
 
 private:
     bool take(std::span<char> raw)
@@ -169,6 +170,8 @@ std::vector<char> pack_information(const Scene& scene)
         out.put(count);
     put_repair(out, build.repair);
     put_optimised(out, build.optimised);
+    for (const SourceTet& own : scene.source_tets) // to the end
+        out.put(own);
     return out.take();
 }
 
@@ -197,7 +200,10 @@ bool unpack_information(std::span<const char> bytes, Scene& scene)
     for (std::uint64_t* count :
          {&build.merged_vertices, &build.degenerate_triangles, &build.duplicate_triangles, &build.snapped_coordinates})
         in.get(*count);
-    return get_repair(in, build.repair) && get_optimised(in, build.optimised) && in.finished();
+    if (!get_repair(in, build.repair) || !get_optimised(in, build.optimised)) return false;
+    while (!in.finished())
+        in.get(scene.source_tets.emplace_back());
+    return in.is_good();
 }
 
 } // namespace tetrace

@@ -86,8 +86,9 @@ std::vector<OptionRow> scene_options()
          bit(Verb::bench) | bit(Verb::check), false, ApplyOption(apply_workload, workload_names()),
          usual_for(bit(Verb::bench), "a named set of scenes, cameras and rays")},
         {"Scenes", "--scene", "SCENE",
-         "A name from the catalogue ('tetrace scenes' lists it), a mesh file (PLY, OBJ, OFF, STL, glTF), a pipe of "
-         "one, or a .tet file. May be repeated, or a list with commas. 'all' is every available scene of the catalogue "
+         "A name from the catalogue ('tetrace scenes' lists it), a mesh file (PLY, OBJ, OFF, STL, glTF; of "
+         "tets MEDIT, Gmsh, TetGen, VTK), a pipe of one, or a .tet file. May be repeated, or a list with commas. 'all' "
+         "is every available scene of the catalogue "
          "except "
          "lattice. NAME-1 is NAME as it was first pinned, the same in "
          "every version of tetrace. NAME@N has about N triangles; the name can be " +

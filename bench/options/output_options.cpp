@@ -49,11 +49,11 @@ std::vector<OptionRow> output_options()
          usual_for(~(tracing | bit(Verb::reproduce)), "{}")},
         {"Output", "--out", "PATH",
          "Write to the file PATH: the result, the picture of 'render', the page of 'report' or 'page'. For 'dump' it "
-         "is the "
-         "folder of the files, and is required, as is the .npy file of 'rays'. Without --format, its extension sets a "
-         "result's format: .json, .csv, "
-         ".md, or .txt for the table; the table still goes to standard output. '-' means standard output instead of a "
-         "file. -o is short for it. Default: none; of 'render' the current folder, of 'report' report.html, of 'page' "
+         "is the folder of the files, and is required, as is the .npy file of 'rays'. Without --format, its extension "
+         "sets a result's format: .json, .csv, "
+         ".md, or .txt for the table; the table still goes to standard output. 'build' writes the tets of a single "
+         "scene to a .vtk, .mesh (MEDIT) or .node (TetGen) file. '-' means standard output instead of a file. -o is "
+         "short for it. Default: none; of 'render' the current folder, of 'report' report.html, of 'page' "
          "tetrace.html.",
          reporting | bit(Verb::render) | bit(Verb::report) | bit(Verb::page) | bit(Verb::dump) | bit(Verb::rays), false,
          set_out(), usual_for(every_verb, "where to write; -o is short for it")},

@@ -3,12 +3,15 @@
 #include "bench/output/report.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
+#include "scenes/export_tets.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <fmt/format.h>
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 
 namespace tetrace {
 
@@ -78,7 +81,8 @@ void count_steps(Built& built, SceneWork& scene, const Options& options)
     built.bytes = row.session->bytes();
 }
 
-Built build_one(const SceneRequest& request, const Options& options)
+/// tets: a file for them, or empty.
+Built build_one(const SceneRequest& request, const Options& options, const std::optional<std::filesystem::path>& tets)
 {
     Built built;
     built.request = request;
@@ -93,6 +97,7 @@ Built build_one(const SceneRequest& request, const Options& options)
         built.request.build.divisions = scene.loaded().scene.domain.divisions;
         built.request.build.domain = scene.loaded().scene.domain.kind;
         built.sphere = source_sphere(scene.loaded().scene);
+        if (tets) export_tets(scene.loaded().scene, *tets);
         count_steps(built, scene, options);
         built.scene = scene_json(scene, options);
     } catch (const Error& error) {
@@ -280,16 +285,36 @@ Report build_report(const std::vector<Built>& all, const Options& options)
 
 } // namespace
 
-int build_command(const Options& options)
+namespace {
+
+/// The file of --out if it is one of tets; the result has none then.
+std::optional<std::filesystem::path> take_tets_file(Options& options, std::size_t scenes)
 {
+    if (!options.out || !is_tets_file(*options.out)) return {};
+    if (scenes != 1)
+        throw Error(ErrorKind::usage,
+                    fmt::format("--out: '{}' is a file of the tets of one scene, and {} are asked for; name one "
+                                "--scene, and one value each of --tets, --domain, --divisions and --switches",
+                                options.out->string(), scenes));
+    check_writable("--out", *options.out);
+    return std::exchange(options.out, std::nullopt);
+}
+
+} // namespace
+
+int build_command(const Options& asked)
+{
+    Options options = asked;
+    const std::vector<SceneRequest> requests = combinations(options);
+    const auto tets = take_tets_file(options, requests.size());
     check_output(options);
     for (const std::string& sentence : missing_default_scenes(options))
         say(sentence);
     std::vector<Built> all;
     bool interrupted = false;
-    for (const SceneRequest& request : combinations(options)) {
+    for (const SceneRequest& request : requests) {
         if (interrupted) break;
-        all.push_back(build_one(request, options));
+        all.push_back(build_one(request, options, tets));
         tell_failure(all);
         interrupted = all.back().interrupted;
     }

@@ -91,6 +91,14 @@ struct BuildInfo {
     friend bool operator==(const BuildInfo&, const BuildInfo&) = default;
 };
 
+/// What the user's own file of tets says of one of them.
+struct SourceTet {
+    std::uint32_t number = 0; ///< in the file, as its format counts
+    std::int32_t region = 0;
+
+    friend bool operator==(const SourceTet&, const SourceTet&) = default;
+};
+
 /// A triangle mesh placed in its domain, and a tetrahedralization of the two. Independent of any packed layout.
 struct Scene {
     std::string name;
@@ -101,6 +109,8 @@ struct Scene {
     TetMesh tets;
     Domain domain;
     BuildInfo build;
+    /// Of the first tets, if the mesh file has tets: they are the file's, in its order. The others fill the domain.
+    std::vector<SourceTet> source_tets = {};
 
     friend bool operator==(const Scene&, const Scene&) = default;
 };

@@ -1,7 +1,6 @@
 #include "scenes/builder/build.h"
 
 #include "core/base/error.h"
-#include "core/base/exact.h"
 #include "core/base/stopwatch.h"
 #include "core/mesh/entry_grid.h"
 #include "scenes/builder/empty_triangles.h"
@@ -15,70 +14,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <numeric>
 
 namespace tetrace {
-
-namespace {
-
-TriangleMesh scaled(const TriangleMesh& mesh, Placement& placement)
-{
-    TriangleMesh result = mesh;
-    placement.snapped_coordinates = 0;
-    placement.moved = 0;
-    for (Float3& vertex : result.vertices) {
-        Double3 change{};
-        for (int axis = 0; axis < 3; ++axis) {
-            const double wanted = std::ldexp(static_cast<double>(vertex[axis]), placement.scale_exponent);
-            vertex[axis] = snap_to_grid(static_cast<float>(wanted));
-            const double by = wanted - static_cast<double>(vertex[axis]);
-            (axis == 0 ? change.x : axis == 1 ? change.y : change.z) = by;
-            if (by != 0) ++placement.snapped_coordinates;
-        }
-        placement.moved = std::max(placement.moved, std::ldexp(length(change), -placement.scale_exponent));
-    }
-    return result;
-}
-
-float reach(const Domain& domain)
-{
-    float most = 0;
-    for (int axis = 0; axis < 3; ++axis)
-        most = std::max({most, -domain.low()[axis], domain.high()[axis]});
-    return most;
-}
-
-// An exponent that surely fits: coordinates times 8 (a wide domain reaches 3 sqrt(3) half-extents, and the centre) stay
-// below 1.
-int safe_exponent(const TriangleMesh& mesh)
-{
-    float most = 0;
-    for (const Float3 v : mesh.vertices)
-        most = std::max({most, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-    int exponent = 0;
-    std::frexp(most, &exponent);
-    return -exponent - 3;
-}
-
-} // namespace
-
-Placement place(TriangleMesh& mesh, DomainKind kind)
-{
-    Placement placement{safe_exponent(mesh)};
-    TriangleMesh best = scaled(mesh, placement);
-    // Twice as large as long as it fits; the domain itself is rounded outwards, so ask for it each time.
-    while (2 * reach(make_domain(best, kind, 1)) <= 1 + 0x1p-18f) {
-        Placement next{placement.scale_exponent + 1};
-        TriangleMesh larger = scaled(mesh, next);
-        if (reach(make_domain(larger, kind, 1)) > 1) break;
-        best = std::move(larger);
-        placement = next;
-    }
-    mesh = std::move(best);
-    return placement;
-}
 
 std::size_t count_pieces(const TriangleMesh& mesh)
 {
@@ -143,19 +82,21 @@ void note_rounding(const MeshSoup& soup, const BuilderTalk& talk)
                           soup.merged_by_rounding, soup.rounding, soup.rounding / length(high - low)));
 }
 
-void read(const std::filesystem::path& path, Scene& scene, const BuilderTalk& talk)
+void read(const std::filesystem::path& path, Scene& scene, OwnTets& own, const BuilderTalk& talk)
 {
     MeshSoup soup = read_mesh(path);
     for (const std::string& note : soup.notes)
         talk.note(note);
     note_rounding(soup, talk);
     scene.mesh = std::move(soup.mesh);
+    own = {std::move(soup.tets), std::move(soup.source_tets), {}, {}};
     scene.build.source_hash = soup.source_hash;
     scene.build.centre = soup.centre;
     scene.build.rounding = soup.rounding;
 }
 
-void place_mesh(Scene& scene, const BuilderOptions& options, const BuilderTalk& talk)
+/// keep: whether triangles stay though rounding leaves them without area, as those of tets do until these are checked.
+void place_mesh(Scene& scene, const BuilderOptions& options, bool keep, const BuilderTalk& talk)
 {
     const Placement placement = place(scene.mesh, options.domain);
     scene.build.scale_exponent = placement.scale_exponent;
@@ -165,7 +106,7 @@ void place_mesh(Scene& scene, const BuilderOptions& options, const BuilderTalk& 
         talk.note(
             fmt::format("{} coordinates near 0 rounded to the grid of 2^-40, which moved vertices by at most {:.3g}",
                         placement.snapped_coordinates, placement.moved));
-        clean(scene, " after rounding to the grid", talk);
+        if (!keep) clean(scene, " after rounding to the grid", talk);
     }
 }
 
@@ -326,8 +267,8 @@ std::string objection_to(const OptimisedTets& result, const Scene& scene)
 
 namespace {
 
-/// A scene without tets.
-Scene mesh_in_domain(const BuilderOptions& options, const BuilderTalk& talk)
+/// A scene without tets; own: those of its file, if it has some.
+Scene mesh_in_domain(const BuilderOptions& options, OwnTets& own, const BuilderTalk& talk)
 {
     Scene scene;
     scene.name = options.name.empty() ? options.mesh.stem().string() : options.name;
@@ -335,14 +276,20 @@ Scene mesh_in_domain(const BuilderOptions& options, const BuilderTalk& talk)
     scene.build.tool = builder_tool();
 
     talk.stage("reading " + scene.build.source);
-    read(options.mesh, scene, talk);
+    read(options.mesh, scene, own, talk);
+    const bool has_tets = !own.tets.empty();
     scene.origins.resize(scene.mesh.triangles.size());
     std::iota(scene.origins.begin(), scene.origins.end(), 0u);
 
     talk.stage("cleaning and placing");
-    clean(scene, "", talk);
-    place_mesh(scene, options, talk);
-    repair_or_refuse(scene, options, talk);
+    if (!has_tets) clean(scene, "", talk);
+    place_mesh(scene, options, has_tets, talk);
+    if (has_tets) {
+        talk.stage(fmt::format("checking {} tets of the file", own.tets.size()));
+        scene.build.repair.asked = options.repair;
+        own = check_own_tets(scene, std::move(own.tets), std::move(own.numbers));
+    } else
+        repair_or_refuse(scene, options, talk);
     drop_own_numbers(scene.origins);
     add_domain(scene, options);
     return scene;
@@ -359,14 +306,20 @@ PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& ta
         talk.stage("reading the prepared mesh");
         scene = read_scene(options.prepared, SceneFileKind::mesh_only);
     } else {
-        scene = mesh_in_domain(options, talk);
-        if (!options.prepared.empty()) write_scene(options.prepared, scene);
+        scene = mesh_in_domain(options, prepared.own, talk);
+        if (!options.prepared.empty() && prepared.own.tets.empty()) write_scene(options.prepared, scene);
     }
     scene.build.switches = options.switches;
     scene.build.order = options.order;
     prepared.surface = domain_surface(scene.domain);
     scene.build.optimised.asked = options.tets;
     if (options.mesh_only) return prepared;
+    if (!prepared.own.tets.empty()) {
+        scene.build.optimised.effort = options.effort;
+        if (options.tets == TetsKind::rays)
+            scene.build.optimised.reason = "the tets of its file are not optimised, since they are data";
+        return prepared;
+    }
     prepared.limits = {options.tets == TetsKind::rays ? options.effort : 0, options.optimise_for_s};
     prepared.limits.several_pieces = prepared.limits.effort > 0 && count_pieces(scene.mesh) > 1;
     if (prepared.limits.several_pieces) // more vertices on the sides to begin with
@@ -376,12 +329,17 @@ PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& ta
     return prepared;
 }
 
-Scene finish_scene(PreparedScene prepared, const RawTets& output, const BuilderTalk& talk)
+Scene finish_scene(PreparedScene prepared, const RawTets& filled, const BuilderTalk& talk)
 {
     Scene scene = std::move(prepared.scene);
-    talk.stage(fmt::format("converting and checking {} tets", output.tets.size()));
+    const bool has_own = !prepared.own.tets.empty();
+    talk.stage(fmt::format("converting and checking {} tets", filled.tets.size()));
+    RawTets joined;
+    if (has_own) joined = join_own_tets(prepared.own, scene, filled);
+    const RawTets& output = has_own ? joined : filled;
     Rounding rounding;
     scene.tets = convert_tets(output, scene.mesh, scene.domain, rounding);
+    if (has_own) require_own_tets(prepared.own, scene);
     if (rounding.damaged > 0)
         talk.note(fmt::format("{} tets flat or inverted after rounding to float, {} of them mended: {} Steiner points "
                               "moved, {} removed, {} cavities filled with other tets",
@@ -389,7 +347,10 @@ Scene finish_scene(PreparedScene prepared, const RawTets& output, const BuilderT
                               rounding.refilled));
     require_sound(scene, output, rounding);
     require_sound_sides(scene, output);
-    if (scene.build.optimised.asked == TetsKind::rays) optimise_for_rays(scene, output.maker, prepared.limits, talk);
+    if (has_own)
+        scene.source_tets = std::move(prepared.own.numbers);
+    else if (scene.build.optimised.asked == TetsKind::rays)
+        optimise_for_rays(scene, output.maker, prepared.limits, talk);
     scene.build.build_s = prepared.watch.seconds();
     return scene;
 }

@@ -5,6 +5,7 @@
 #include "core/mesh/scene.h"
 #include "core/mesh/triangle_mesh.h"
 #include "scenes/builder/convert_tets.h"
+#include "scenes/builder/own_tets.h"
 #include "scenes/builder/raw_tets.h"
 #include "scenes/builder/repair/repair.h"
 #include "scenes/optimise/optimise.h"
@@ -64,14 +65,18 @@ struct PreparedScene {
     TriangleMesh surface;       ///< the domain's
     std::vector<Float3> points; ///< more vertices for TetGen; if switches lack q and tets are for rays
     OptimiserLimits limits;
-    Stopwatch watch; ///< since its mesh was read
+    Stopwatch watch;  ///< since its mesh was read
+    OwnTets own = {}; ///< of a file of tets; they stay as they are, and are not optimised
+
+    /// The triangles that TetGen keeps.
+    [[nodiscard]] const TriangleMesh& facets() const { return own.tets.empty() ? scene.mesh : own.hull; }
 };
 
 /// This program and the libraries that decide a scene, with their versions.
 [[nodiscard]] std::string builder_tool();
 
 /// Reads, cleans, places and checks a mesh, or repairs it, and makes its domain; or reads the file of a run before that
-/// did so with the same options, but for those of TetGen and the optimiser.
+/// did so with the same options, but for those of TetGen and the optimiser. A file of tets is read each time.
 /// Throws Error as read_mesh and make_domain do, and BuilderFailure{BUILDER_SELF_INTERSECTION} with the first pairs, or
 /// as repair() does.
 [[nodiscard]] PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& talk);
@@ -80,9 +85,10 @@ struct PreparedScene {
 /// may.
 [[nodiscard]] std::string objection_to(const OptimisedTets& result, const Scene& scene);
 
-/// Converts raw tets and checks them: structure, orientation, every input triangle covered, the domain filled, the
-/// entry grid complete. Throws BuilderFailure{BUILDER_ABSURD_OUTPUT} naming the check that failed. Then optimises the
-/// tets, if they are for rays; what that cannot improve, or what fails a check, stays as it was, with the reason.
-[[nodiscard]] Scene finish_scene(PreparedScene prepared, const RawTets& output, const BuilderTalk& talk);
+/// Joins raw tets with those of the file, if it has some. Converts them and checks them: structure, orientation, every
+/// input triangle covered, the domain filled, the entry grid complete. Throws BuilderFailure{BUILDER_ABSURD_OUTPUT}
+/// naming the check that failed. Then optimises the tets, if they are for rays; what that cannot improve, or what fails
+/// a check, stays as it was, with the reason.
+[[nodiscard]] Scene finish_scene(PreparedScene prepared, const RawTets& filled, const BuilderTalk& talk);
 
 } // namespace tetrace

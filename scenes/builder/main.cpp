@@ -95,8 +95,9 @@ int guarded(const Work& work)
 std::optional<int> parse(int argc, char** argv, BuilderOptions& options)
 {
     CLI::App app{
-        "Builds a tetrace scene: reads a triangle mesh (PLY, OBJ, OFF, STL, glTF), checks it, tetrahedralizes its "
-        "domain with\n"
+        "Builds a tetrace scene: reads a mesh of triangles (PLY, OBJ, OFF, STL, glTF) or tets (MEDIT, Gmsh, TetGen, "
+        "VTK), checks it,\n"
+        "tetrahedralizes the rest of its domain with "
         "TetGen and writes a .tet file. `tetrace build` runs it; it links CGAL (GPL) and TetGen (AGPL), "
         "tetrace does not.",
         "tetrace-builder"};
@@ -237,12 +238,12 @@ int main(int argc, char** argv)
     RawTets output;
     if (options.switches == cgal_switches) {
         say("stage", "CGAL's tets");
-        code = guarded([&] { output = run_cgal(prepared.scene.mesh, prepared.surface, prepared.points); });
+        code = guarded([&] { output = run_cgal(prepared.facets(), prepared.surface, prepared.points); });
         if (code != BUILDER_GOOD) return code;
     } else {
         say("stage", "TetGen " + options.switches);
         std::set_terminate(explain_tetgen_failure); // and the call is not inside a handler: see run_tetgen
-        output = run_tetgen(prepared.scene.mesh, prepared.surface, prepared.points, options.switches, options.order);
+        output = run_tetgen(prepared.facets(), prepared.surface, prepared.points, options.switches, options.order);
     }
     begin_limit(0);
     finish_when_interrupted(prepared);

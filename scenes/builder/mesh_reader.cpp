@@ -42,6 +42,9 @@ std::string format_of(std::string_view bytes)
     if (begin.starts_with("ply")) return ".ply";
     if (begin.starts_with("gltf")) return ".glb";
     if (begin.starts_with("{")) return ".gltf";
+    if (begin.starts_with("meshversionformatted")) return ".mesh";
+    if (begin.starts_with("$meshformat")) return ".msh";
+    if (begin.starts_with("# vtk")) return ".vtk";
     if (begin.starts_with("solid") || bytes.substr(0, 200).find('\0') != std::string_view::npos) return ".stl";
     return begin.substr(0, begin.find(' ')).find("off") != std::string::npos ? ".off" : ".obj";
 }
@@ -53,8 +56,13 @@ void read_as(const std::string& extension, MeshSource& source)
     if (extension == ".off") return read_off(source);
     if (extension == ".stl") return read_stl(source);
     if (extension == ".glb" || extension == ".gltf") return read_gltf(source);
+    if (extension == ".mesh") return read_medit(source);
+    if (extension == ".msh") return read_gmsh(source);
+    if (extension == ".ele") return read_tetgen(source);
+    if (extension == ".vtk") return read_vtk(source);
     source.fail("name", "the format '" + extension + "' is not known",
-                "use a file with the extension .ply, .obj, .off, .stl, .glb or .gltf");
+                "use a file with the extension .ply, .obj, .off, .stl, .glb or .gltf, or one of tets: .mesh, .msh, "
+                ".ele or .vtk; meshio converts others to them: meshio convert FILE NEW.mesh");
 }
 
 MeshSoup parse(const std::filesystem::path& path, std::string_view bytes, const std::filesystem::path& folder)
@@ -71,15 +79,19 @@ MeshSoup parse(const std::filesystem::path& path, std::string_view bytes, const 
 
 } // namespace
 
-MeshSoup read_mesh(const std::filesystem::path& path)
+MeshSoup read_mesh(const std::filesystem::path& given)
 {
+    std::filesystem::path path = given;
+    if (path.extension() == ".node") path.replace_extension(".ele");
     const std::string bytes = read_bytes(path);
-    const bool has_other_files = lower_case(path.extension().string()) == ".gltf";
+    const std::string extension = lower_case(path.extension().string());
+    const bool has_other_files = extension == ".gltf" || extension == ".ele";
     const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
     MeshSoup soup = parse(path, bytes, has_other_files ? folder : "");
     Hasher hasher;
     hasher.add(std::as_bytes(std::span(bytes)));
-    if (has_other_files) add_gltf_buffers(hasher, path, bytes);
+    if (extension == ".gltf") add_gltf_buffers(hasher, path, bytes);
+    if (extension == ".ele") add_file(hasher, std::filesystem::path(path).replace_extension(".node"));
     soup.source_hash = hasher.hash();
     return soup;
 }

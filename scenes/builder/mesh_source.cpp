@@ -76,9 +76,33 @@ void MeshSource::add_face(const std::vector<std::int64_t>& corners, std::size_t 
     }
 }
 
+void MeshSource::add_tet(const std::vector<std::int64_t>& corners, std::size_t vertex_count, FileTet tet,
+                         const std::string& place)
+{
+    TetCorners indices{};
+    for (std::size_t i = 0; i < 4; ++i) {
+        if (corners[i] < 0 || static_cast<std::uint64_t>(corners[i]) >= vertex_count)
+            fail(place, fmt::format("a corner is none of the {} vertices of the file", vertex_count));
+        indices[i] = static_cast<std::uint32_t>(corners[i]);
+    }
+    const auto number = static_cast<std::uint32_t>(tet.number);
+    const auto region = static_cast<std::int32_t>(tet.region);
+    if (number != tet.number || region != tet.region)
+        fail(place, fmt::format("its number {} or its region {} has more than 32 bits", tet.number, tet.region),
+             "number tets and regions anew");
+    if (tets_.size() >= MAX_TETS) fail(place, fmt::format("more than {} tets", MAX_TETS), "use a coarser mesh");
+    tets_.push_back(indices);
+    source_tets_.push_back({number, region});
+}
+
 MeshSoup MeshSource::finish()
 {
     if (positions_.empty()) fail("mesh", "it lacks vertices", "export the mesh again, with its geometry");
+    if (!tets_.empty()) {
+        MeshSoup soup;
+        finish_tets(soup);
+        return soup;
+    }
     if (triangles_.empty() && polygons_.empty())
         fail("mesh", "it lacks triangles", "a point cloud or a curve has no surface: reconstruct one first");
     MeshSoup soup;
@@ -136,6 +160,9 @@ std::uint64_t count_merged(const std::vector<Double3>& positions, const std::vec
 void MeshSource::place_vertices(MeshSoup& soup)
 {
     std::vector<bool> used(positions_.size(), false);
+    for (const auto& tet : tets_)
+        for (const std::uint32_t vertex : tet)
+            used[vertex] = true;
     for (const auto& triangle : triangles_)
         for (const std::uint32_t vertex : triangle)
             used[vertex] = true;
@@ -151,6 +178,37 @@ void MeshSource::place_vertices(MeshSoup& soup)
         if (used[i]) soup.rounding = std::max(soup.rounding, length(position - to_double(soup.mesh.vertices.back())));
     }
     if (soup.rounding > 0) soup.merged_by_rounding = count_merged(positions_, soup.mesh.vertices);
+}
+
+void MeshSource::finish_tets(MeshSoup& soup)
+{
+    if (const std::size_t faces = triangles_.size() + polygons_.size(); faces > 0)
+        note(fmt::format("{} triangles and polygons skipped: faces of tets say where regions end", faces));
+    triangles_.clear(); // their vertices need not be tets'
+    corners_.clear();
+    place_vertices(soup);
+    for (std::size_t i = 0; i < tets_.size(); ++i) {
+        TetCorners& tet = tets_[i];
+        const auto side = [&](std::size_t corner) { return positions_[tet[corner]] - positions_[tet[0]]; };
+        const double volume = dot(cross(side(1), side(2)), side(3));
+        if (volume == 0)
+            fail(fmt::format("tet {}", source_tets_[i].number), "it is flat",
+                 "remove flat tets from the mesh, for example with Gmsh's or TetGen's optimiser");
+        if (volume < 0) std::swap(tet[0], tet[1]); // those of a file may be either way round
+    }
+    soup.tets = std::move(tets_);
+    soup.source_tets = std::move(source_tets_);
+    std::size_t vertices = soup.mesh.vertices.size();
+    keep_corners(soup.mesh.vertices, soup.tets);
+    if (vertices -= soup.mesh.vertices.size(); vertices > 0)
+        note(fmt::format("{} vertices dropped, at the place of another or of no tet", vertices));
+    soup.notes = std::move(notes_);
+    try {
+        for (const TetSurface& face : surface_of(soup.tets, soup.source_tets))
+            soup.mesh.triangles.push_back(face.corners);
+    } catch (const Error& error) {
+        fail("tets", error.what(), "repair the mesh: no tet may be there twice, and none may overlap another");
+    }
 }
 
 void MeshSource::cut_polygons(MeshSoup& soup) const

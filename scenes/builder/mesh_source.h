@@ -14,6 +14,14 @@
 
 namespace tetrace {
 
+/// What a file says of a tet.
+struct FileTet {
+    std::int64_t number, region;
+};
+
+/// The remedy for elements that are not tets.
+inline constexpr const char* split_into_tets = "split them into tets of four corners, for example with Gmsh";
+
 /// A mesh file's bytes, and the soup that a format's reader fills from them.
 ///
 /// Why no library reads them: results/readers.md. Each library accepts some damaged files (cut short, a NaN, an index
@@ -28,6 +36,7 @@ public:
 
     [[nodiscard]] std::string_view bytes() const { return bytes_; }
     [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+    [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] std::size_t vertex_count() const { return positions_.size(); }
 
     /// Throws Error{invalid_input}: "reading <file>: <place>: <problem>; <remedy>".
@@ -41,11 +50,16 @@ public:
     void add_vertex(Double3 position, const std::string& place);
     /// Adds a polygon; throws if an index is not below `vertex_count`.
     void add_face(const std::vector<std::int64_t>& corners, std::size_t vertex_count, const std::string& place);
+    /// Adds a tet of four corners; throws if an index is not below `vertex_count`, or a number is too large.
+    void add_tet(const std::vector<std::int64_t>& corners, std::size_t vertex_count, FileTet tet,
+                 const std::string& place);
     /// A sentence for the user.
     void note(std::string sentence) { notes_.push_back(std::move(sentence)); }
 
     /// Rounds the vertices and cuts the polygons, each of which is in the place among the triangles where it was added.
-    /// Throws if there are no vertices or no triangles. The source is empty then.
+    /// If there are tets, the triangles are their hull and the faces between regions, and no others.
+    /// Throws if there are no vertices, and neither triangles nor tets, or for what surface_of() refuses. The source is
+    /// empty then.
     [[nodiscard]] MeshSoup finish();
 
 private:
@@ -55,6 +69,7 @@ private:
     };
 
     void place_vertices(MeshSoup& soup);
+    void finish_tets(MeshSoup& soup);
     void cut_polygons(MeshSoup& soup) const;
 
     std::string name_;
@@ -64,6 +79,8 @@ private:
     std::vector<std::array<std::uint32_t, 3>> triangles_;
     std::vector<std::uint32_t> corners_; ///< of the polygons
     std::vector<Polygon> polygons_;
+    std::vector<TetCorners> tets_;
+    std::vector<SourceTet> source_tets_;
     std::vector<std::string> notes_;
     std::uint64_t skipped_faces_ = 0; ///< of fewer than three corners
 };
@@ -83,6 +100,7 @@ public:
     /// Whether fewer lines that are not blank follow than `records`: then values have to be taken word by word.
     [[nodiscard]] bool has_fewer_lines(std::uint64_t records) const;
     [[nodiscard]] std::string place(const std::string& element) const; ///< "<element> (line <n>)"
+    [[nodiscard]] std::size_t line() const { return line_; }
 
 private:
     std::string_view text_;
@@ -109,5 +127,9 @@ void read_obj(MeshSource& source);
 void read_off(MeshSource& source);
 void read_stl(MeshSource& source);
 void read_gltf(MeshSource& source);
+void read_medit(MeshSource& source);
+void read_gmsh(MeshSource& source);
+void read_tetgen(MeshSource& source);
+void read_vtk(MeshSource& source);
 
 } // namespace tetrace

@@ -23,7 +23,8 @@ void read_as(std::string_view bytes)
     may_refuse([&] { (void)parse_mesh(Name, bytes); });
 }
 
-constexpr const char *ply = "mesh.ply", *obj = "mesh.obj", *off = "mesh.off", *stl = "mesh.stl", *gltf = "mesh.glb";
+constexpr const char *ply = "mesh.ply", *obj = "mesh.obj", *off = "mesh.off", *stl = "mesh.stl", *gltf = "mesh.glb",
+                     *medit = "mesh.mesh", *gmsh = "mesh.msh", *vtk = "mesh.vtk";
 
 // The places of the .tet format (scenes/scene_file.cpp): a header of 32 bytes, 7 entries of 48, a checksum.
 constexpr std::size_t header_bytes = 32, entry_bytes = 48, sections = 7;
@@ -83,13 +84,16 @@ void read_archive(std::string_view bytes)
         may_refuse([&] { (void)read_archive_member(file.path(), member, 1 << 20); });
 }
 
-constexpr std::array<Target, 7> targets = {{{"ply", read_as<ply>},
-                                            {"obj", read_as<obj>},
-                                            {"off", read_as<off>},
-                                            {"stl", read_as<stl>},
-                                            {"gltf", read_as<gltf>},
-                                            {"tet", read_tet},
-                                            {"archive", read_archive}}};
+constexpr std::array<Target, 10> targets = {{{"ply", read_as<ply>},
+                                             {"obj", read_as<obj>},
+                                             {"off", read_as<off>},
+                                             {"stl", read_as<stl>},
+                                             {"gltf", read_as<gltf>},
+                                             {"medit", read_as<medit>},
+                                             {"gmsh", read_as<gmsh>},
+                                             {"vtk", read_as<vtk>},
+                                             {"tet", read_tet},
+                                             {"archive", read_archive}}};
 
 } // namespace
 

@@ -288,3 +288,21 @@ TEST_F(Meshes, whose_tets_cannot_be_built_are_traced_through_bvhs)
     EXPECT_EQ(run("build --scene banana --time-limit 0.01").code, 2) << "nothing is built";
     EXPECT_EQ(run("render --scene banana --time-limit 0.01 --size 32 --views 0 --structure bvh --out a.ppm").code, 0);
 }
+
+TEST_F(Meshes, of_tets_conform_in_each_task_and_are_written_again)
+{
+    write_file(folder_ / "own.mesh",
+               "MeshVersionFormatted 2\nDimension 3\nVertices\n6\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n1 1 1 0\n-1 -1 "
+               "0.5 0\nTetrahedra\n3\n1 2 3 4 7\n3 2 4 5 9\n1 3 4 6 7\nEnd\n");
+    const std::string how = "--layout tet80,half32,tet64 --rays random --size 32 --views 0 --backend openmp";
+    const Ended own = run("check --scene own.mesh --task segments,tally,trace " + how);
+    EXPECT_EQ(own.code, 0) << own.errors << own.out;
+    EXPECT_TRUE(contains(own.out, "Conforms")) << own.out;
+    const Ended built = run("build --scene own.mesh --size 16 --out own.vtk");
+    EXPECT_EQ(built.code, 0) << built.errors;
+    EXPECT_TRUE(contains(file("own.vtk"), "SCALARS region long 1\nLOOKUP_TABLE default\n7\n9\n7\n0\n"));
+    const Ended again = run("check --scene own.vtk --task segments " + how);
+    EXPECT_EQ(again.code, 0) << again.errors << again.out;
+    EXPECT_EQ(run("build --scene own.mesh,cubes --out two.vtk").code, 2);
+    EXPECT_EQ(run("build --scene own.mesh --out no/such/folder/own.vtk").code, 2);
+}
