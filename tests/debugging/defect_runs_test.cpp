@@ -36,7 +36,7 @@ public:
         if (name == fails) throw Error(ErrorKind::driver, "SIGSEGV");
         for (const Defect& defect : all_defects()) {
             if (defect.name != name) continue;
-            auto words = expected_words(defect, launch.items);
+            auto words = expected_words(defect, launch);
             if (name == wrong && launch.items >= wrong_from) ++words[5];
             if (name == flushes) words[0] = 0;
             return words;
