@@ -12,8 +12,9 @@
 #define GROUP_FN(name)                                                                                                 \
     KERNEL_FN void name([[maybe_unused]] const uint* words, uint* results, [[maybe_unused]] uint* local_words,         \
                         uint item_count)
-#ifndef EACH_ITEM // the host's emulation has one
+#ifndef EACH_ITEM // the host's emulation has its own
 #define EACH_ITEM
+#define PAUSE
 #endif
 #define BARRIER __syncthreads();
 #define FENCE __threadfence();

@@ -4,8 +4,11 @@
 #include "kernels/layouts/defect_words.h"
 #include "kernels/layouts/layout.h"
 
+#include <thread>
+
 // Of a kernel with barriers, the first thread of a block runs all of it: each thread in turn, between barriers.
 #define EACH_ITEM for (threadIdx.x = 0u; threadIdx.x < blockDim.x; threadIdx.x++)
+#define PAUSE std::this_thread::yield();
 
 namespace {
 

@@ -18,6 +18,7 @@
                         uint item_count)
 #define EACH_ITEM
 #define BARRIER barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
+#define PAUSE
 #define LOCAL ((uint)get_local_id(0))
 #define GROUP_SIZE ((uint)get_local_size(0))
 #define ITEM ((uint)get_global_id(0))

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <thread>
 
 namespace {
 #define DEFECT_WORDS const uint *words,

@@ -29,6 +29,7 @@ shared uint local_words[LOCAL_WORDS];
     memoryBarrierBuffer();                                                                                             \
     barrier();
 #define FENCE memoryBarrierBuffer();
+#define PAUSE
 #define LOCAL gl_LocalInvocationIndex
 #define GROUP_SIZE gl_WorkGroupSize.x
 #define ITEM gl_GlobalInvocationID.x

@@ -6,7 +6,7 @@
 // RESULT(index), ADD(index, added): a word of the output, and an atomic sum that returns the word before. The items'
 // words come first, then those of all groups. They begin as zeros.
 // LOCAL_WORD(index), LOCAL_ADD(index, added): the same of the group's memory, LOCAL_WORDS words.
-// FENCE: what was written before it is seen by whoever sees an ADD after it.
+// FENCE: what was written before it is seen by whoever sees an ADD after it. PAUSE, in a loop that waits: others may run.
 
 // A word that all groups share.
 #define SHARED(index) (ITEM_COUNT + (index))
@@ -108,8 +108,10 @@ GROUP_FN(handed_over)
         if (LOCAL == 0u) {
             uint taken = ADD(SHARED(0u), 1u);
             uint seen = taken == 0u ? 1u : 0u;
-            for (uint polls = 0u; seen == 0u && polls < 16777216u; polls++)
+            for (uint polls = 0u; seen == 0u && polls < 16777216u; polls++) {
+                PAUSE
                 seen = ADD(SHARED(taken), 0u);
+            }
             FENCE
             LOCAL_WORD(0u) = taken;
             LOCAL_WORD(1u) = seen;

@@ -1,12 +1,13 @@
 // What kernels/defects/group_stressors.h and lane_stressors.h need, as host C++: a group's items take turns between
 // barriers, and a subgroup is one item. Include it after dialect_cpp.h. Defined by the entry file: LOCAL_WORDS, how
-// many words of memory a group has. Include <atomic> before it.
+// many words of memory a group has. Include <atomic> and <thread> before it.
 #define GROUP_FN(name)                                                                                                 \
     KERNEL_FN void name([[maybe_unused]] const uint* words, uint* results, [[maybe_unused]] uint* local_words,         \
                         [[maybe_unused]] uint item_count, [[maybe_unused]] uint group, uint group_size)
 #define EACH_ITEM for (uint local = 0u; local < group_size; local++)
 #define BARRIER
 #define FENCE std::atomic_thread_fence(std::memory_order_seq_cst);
+#define PAUSE std::this_thread::yield();
 #define LOCAL local
 #define GROUP_SIZE group_size
 #define ITEM (group * group_size + local)
