@@ -6,7 +6,8 @@
 // RESULT(index), ADD(index, added): a word of the output, and an atomic sum that returns the word before. The items'
 // words come first, then those of all groups. They begin as zeros.
 // LOCAL_WORD(index), LOCAL_ADD(index, added): the same of the group's memory, LOCAL_WORDS words.
-// FENCE: what was written before it is seen by whoever sees an ADD after it. PAUSE, in a loop that waits: others may run.
+// FENCE: what was written before it is seen by whoever sees an ADD after it. PAUSE, in a loop that waits: others may
+// run.
 
 // A word that all groups share.
 #define SHARED(index) (ITEM_COUNT + (index))
