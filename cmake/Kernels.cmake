@@ -49,13 +49,16 @@ foreach(row IN LISTS rows)
   endif()
 endforeach()
 
-# TETRACE_DEFECTS: the reduced kernels of kernels/defects/defects.h.
+# TETRACE_DEFECTS: the reduced kernels of kernels/defects/defects.h; TETRACE_DEFECT_OPTIONS_<name>: how its text is
+# compiled alone.
 set(TETRACE_DEFECTS "")
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/kernels/defects/defect_list.inc)
-file(STRINGS ${PROJECT_SOURCE_DIR}/kernels/defects/defect_list.inc rows REGEX "^DEFECT")
+file(STRINGS ${PROJECT_SOURCE_DIR}/kernels/defects/defect_list.inc rows REGEX "^[A-Z_]*DEFECT[(]")
 foreach(row IN LISTS rows)
-  string(REGEX MATCH "^DEFECT.([a-z0-9_]+)" ignored ${row})
-  list(APPEND TETRACE_DEFECTS ${CMAKE_MATCH_1})
+  string(REGEX MATCH "^([A-Z_]*DEFECT).([a-z0-9_]+)" ignored ${row})
+  list(APPEND TETRACE_DEFECTS ${CMAKE_MATCH_2})
+  string(REPLACE LANE_DEFECT "LANES;-DGROUP_DEFECT" option ${CMAKE_MATCH_1})
+  set(TETRACE_DEFECT_OPTIONS_${CMAKE_MATCH_2} -D${option}=${CMAKE_MATCH_2})
 endforeach()
 
 # tetrace_kernel_parts(<kernel>): sets structure, method, layout, family, name (that of embedded_name() without math

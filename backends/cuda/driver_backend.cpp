@@ -111,20 +111,19 @@ ProgramId probe_program(MathMode math)
     return {"probe", math};
 }
 
-/// Runs a kernel that reads an input and writes a word an item. what: "the self-test", in messages.
-std::vector<std::uint32_t> words_of(OpenDevice& device, FunctionHandle kernel, std::span<const std::byte> input,
-                                    std::uint32_t items, unsigned block_threads, const std::string& what)
+/// Runs a kernel that reads an input and changes the results. what: "the self-test", in messages.
+void run_on_words(OpenDevice& device, FunctionHandle kernel, std::span<const std::byte> input, std::uint32_t items,
+                  unsigned block_threads, std::vector<std::uint32_t>& results, const std::string& what)
 {
-    std::vector<std::uint32_t> results(items);
     const Memory read(device.context, input, ("the input of " + what).c_str(), device.stream.get());
-    const Memory written(device.context, results.size() * sizeof(results[0]), ("the results of " + what).c_str());
+    const Memory written(device.context, std::as_bytes(std::span(results)), ("the results of " + what).c_str(),
+                         device.stream.get());
     Address from = read.address(), to = written.address();
     void* parameters[] = {&from, &to, &items};
     device.launch(kernel, (items + block_threads - 1) / block_threads, block_threads, parameters);
     device.context.check(device.driver().copy_to_host(results.data(), to, written.bytes(), device.stream.get()),
                          ("copying the results of " + what + " to the host").c_str());
     device.synchronize();
-    return results;
 }
 
 } // namespace
@@ -174,8 +173,10 @@ std::vector<std::uint32_t> DriverBackend::probe(std::size_t device, MathMode mat
     OpenDevice opened(here.driver.driver, ordinal_of(here.driver.driver, device));
     const ProgramId id = probe_program(math);
     const LoadedProgram program = load_program(opened.context, opened.capability, here.programs, id, {});
-    return words_of(opened, program.module.function(id.name()), std::as_bytes(operations),
-                    static_cast<std::uint32_t>(operations.size()), probe_block_threads, "the self-test");
+    std::vector<std::uint32_t> results(operations.size());
+    run_on_words(opened, program.module.function(id.name()), std::as_bytes(operations),
+                 static_cast<std::uint32_t>(operations.size()), probe_block_threads, results, "the self-test");
+    return results;
 }
 
 std::vector<std::uint32_t> DriverBackend::run_defect(std::size_t device, std::string_view name,
@@ -184,9 +185,11 @@ std::vector<std::uint32_t> DriverBackend::run_defect(std::size_t device, std::st
     const Found& here = require(device);
     OpenDevice opened(here.driver.driver, ordinal_of(here.driver.driver, device));
     const LoadedProgram program = load_program(opened.context, opened.capability, here.programs, {"defects"}, {});
-    const auto words = defect_words();
-    return words_of(opened, program.module.function("run_" + std::string(name)), std::as_bytes(std::span(words)),
-                    launch.items, launch.group_items, std::string(name));
+    const auto words = defect_words(launch);
+    std::vector<std::uint32_t> results(output_words(name, launch));
+    run_on_words(opened, program.module.function("run_" + std::string(name)), std::as_bytes(std::span(words)),
+                 launch.items, launch.group_items, results, std::string(name));
+    return results;
 }
 
 CompiledCode DriverBackend::compiled(std::size_t device, const std::optional<KernelId>& kernel,

@@ -1,9 +1,29 @@
 // backends/cuda/defects.cu as host C++.
 #include "backends/cuda_host/kernels.h"
 #include "backends/cuda_host/shim.h"
+#include "kernels/layouts/defect_words.h"
 #include "kernels/layouts/layout.h"
 
+#include <thread>
+
+// Of a kernel with barriers, the first thread of a block runs all of it: each thread in turn, between barriers.
+#define EACH_ITEM for (threadIdx.x = 0u; threadIdx.x < blockDim.x; threadIdx.x++)
+#define PAUSE std::this_thread::yield();
+
 namespace {
+
+void __syncthreads() {}
+
+void __threadfence()
+{
+    std::atomic_thread_fence(std::memory_order_seq_cst);
+}
+
+std::uint32_t __activemask()
+{
+    return 1;
+}
+
 #include "backends/cuda/defects.cu"
 } // namespace
 
@@ -14,6 +34,12 @@ namespace tetrace::cuda_host {
     {                                                                                                                  \
         call(run_##name, arguments);                                                                                   \
     }
+#define GROUP_DEFECT(name)                                                                                             \
+    void run_run_##name(void** arguments)                                                                              \
+    {                                                                                                                  \
+        if (threadIdx.x == 0u) call(run_##name, arguments);                                                            \
+    }
+#define LANE_DEFECT GROUP_DEFECT
 #include "kernels/defects/defect_list.inc"
 
 } // namespace tetrace::cuda_host

@@ -83,7 +83,12 @@ public:
     [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name,
                                                         const DefectLaunch& launch) override
     {
-        return opencl::run_defect(*context(device, 0), name, launch);
+        const auto opened = context(device, 0);
+        if (defect_ == nullptr || !defect_->is_of(*opened, name)) {
+            defect_.reset();
+            defect_ = std::make_unique<opencl::DefectProgram>(opened, name);
+        }
+        return defect_->run(launch);
     }
 
     [[nodiscard]] std::vector<KernelFile> kernel_files(const KernelId& kernel) const override
@@ -135,6 +140,8 @@ private:
         return found_;
     }
 
+    /// The last one, for its next launch. Not destroyed at exit: the driver may be unloaded by then.
+    std::unique_ptr<opencl::DefectProgram>& defect_ = *new std::unique_ptr<opencl::DefectProgram>;
     mutable std::once_flag once_;
     mutable Found found_;
     mutable std::vector<Shared> shared_; ///< device by device

@@ -82,6 +82,19 @@ DeviceKind kind_of(const cl::Device& device)
     return (device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0 ? DeviceKind::emulated : DeviceKind::gpu;
 }
 
+/// Whether it has OpenCL C 3.0, and there a fence between all its groups.
+bool has_device_fences(const cl::Device& device)
+{
+    constexpr cl_device_info version_queried = 0x105E, fences_queried = 0x1064;
+    constexpr cl_uint version_3 = 3u << 22;
+    constexpr cl_bitfield wanted = 1u << 1 | 1u << 5; // acquire and release, scope of the device
+    cl_uint version = 0;
+    cl_bitfield fences = 0;
+    (void)clGetDeviceInfo(device(), version_queried, sizeof(version), &version, nullptr); // older drivers: 0
+    (void)clGetDeviceInfo(device(), fences_queried, sizeof(fences), &fences, nullptr);
+    return version >= version_3 && (fences & wanted) == wanted;
+}
+
 /// Empty if the device has all that the kernels need; else the reason.
 std::string reason_against(const cl::Device& device, std::size_t group_items)
 {
@@ -129,6 +142,8 @@ void describe(const cl::Platform& platform, FoundDevice& found)
     // What a processor's driver calls local memory is memory as any other.
     found.stack_top = facts.kind == DeviceKind::gpu ? STACK_TOP_OF_GPUS : 0;
     found.divides_correctly = (device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
+    found.has_ballots = has_extension(device, "cl_khr_subgroup_ballot");
+    found.has_fences = has_device_fences(device);
     found.build_key = platform_name + "\n" + platform_version + "\n" + driver_version + "\n" + facts.name + "\n" +
                       device.getInfo<CL_DEVICE_VERSION>();
 }

@@ -69,7 +69,7 @@ LaunchCase defect_case(std::string_view name, const DefectLaunch& launch)
     FoundDevice any;
     any.facts.kind = DeviceKind::gpu; // without the options for processors
     LaunchCase made = case_of(any, defect_program(name), "run_defect", launch.group_items, launch.groups());
-    const auto words = defect_words();
+    const auto words = defect_words(launch);
     made.inputs = {input("buffer", 0, "words", "what the kernel reads", std::span(words)),
                    input("value", 2, "count", "the number of items", std::span(&launch.items, 1))};
     made.output = 1;

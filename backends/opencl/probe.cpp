@@ -28,22 +28,54 @@ std::vector<std::uint32_t> run_probe(Context& context, MathMode math, std::span<
 
 ProgramId defect_program(std::string_view name)
 {
-    return {.source = "defects", .defines = "-DDEFECT=" + std::string(name)};
+    const Defect* const defect = find_defect(name);
+    const bool shares = defect != nullptr && defect->expected_output != nullptr;
+    ProgramId id{.source = "defects", .defines = (shares ? "-DGROUP_DEFECT=" : "-DDEFECT=") + std::string(name)};
+    if (!shares || defect->need == DefectNeed::none) return id;
+    id.standard = "CL3.0";
+    if (defect->need == DefectNeed::ballots) id.defines += " -DLANES";
+    return id;
 }
 
-std::vector<std::uint32_t> run_defect(Context& context, std::string_view name, const DefectLaunch& launch)
+namespace {
+
+/// Throws Error{unsupported} if the device lacks what the kernel needs.
+void require_for_defect(const FoundDevice& device, std::string_view name)
 {
-    std::vector<std::uint32_t> results(launch.items);
-    const auto words = defect_words();
-    const ProgramCache none({});
-    const Program program(context, defect_program(name), none);
+    const Defect* const defect = find_defect(name);
+    if (defect == nullptr) return;
+    if (defect->need == DefectNeed::ballots && !device.has_ballots)
+        throw Error(ErrorKind::unsupported, "it lacks cl_khr_subgroup_ballot");
+    if (defect->need == DefectNeed::fences && !device.has_fences)
+        throw Error(ErrorKind::unsupported, "its OpenCL C 3.0 lacks fences between groups");
+}
+
+Program defect_on(Context& context, std::string_view name, const ProgramCache& cache)
+{
+    require_for_defect(context.found(), name);
+    return {context, defect_program(name), cache};
+}
+
+} // namespace
+
+DefectProgram::DefectProgram(std::shared_ptr<Context> context, std::string_view name)
+    : context_(std::move(context)), name_(name), program_(defect_on(*context_, name, none_))
+{
+}
+
+std::vector<std::uint32_t> DefectProgram::run(const DefectLaunch& launch) const
+{
+    std::vector<std::uint32_t> results(output_words(name_, launch));
+    const auto words = defect_words(launch);
     const std::size_t read_bytes = words.size() * sizeof(words[0]), written_bytes = results.size() * sizeof(results[0]);
-    context.run("running " + std::string(name), read_bytes + written_bytes, [&] {
+    Context& context = *context_;
+    context.run("running " + name_, read_bytes + written_bytes, [&] {
         const cl::CommandQueue queue = context.make_queue();
         const cl::Buffer from(context.handle(), CL_MEM_READ_ONLY, read_bytes);
         const cl::Buffer to(context.handle(), CL_MEM_READ_WRITE, written_bytes);
         queue.enqueueWriteBuffer(from, CL_TRUE, 0, read_bytes, words.data());
-        cl::Kernel kernel(program.handle(), "run_defect");
+        queue.enqueueWriteBuffer(to, CL_TRUE, 0, written_bytes, results.data());
+        cl::Kernel kernel(program_.handle(), "run_defect");
         kernel.setArg(0, from);
         kernel.setArg(1, to);
         kernel.setArg(2, launch.items);

@@ -59,7 +59,7 @@ std::string defines_of(const KernelId& kernel, unsigned tile_height, bool in_par
 
 std::string build_options(const FoundDevice& device, const ProgramId& id)
 {
-    std::string options = "-cl-std=CL1.2 " + id.defines;
+    std::string options = "-cl-std=" + id.standard + " " + id.defines;
     // Oclgrind 21.10 interprets its optimiser's output, but not llvm.experimental.noalias.scope.decl, which comes from
     // inlined functions that return structs.
     if (device.facts.implementation.starts_with("oclgrind")) options += " -cl-opt-disable -DCALLS_FUNCTIONS";

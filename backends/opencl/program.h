@@ -19,7 +19,8 @@ namespace tetrace::opencl {
 struct ProgramId {
     std::string source; ///< its name
     MathMode math = MathMode::exact;
-    std::string defines = {}; ///< further options: "-DGROUP_ITEMS=64"
+    std::string defines = {};       ///< further options: "-DGROUP_ITEMS=64"
+    std::string standard = "CL1.2"; ///< version of OpenCL C
 };
 
 /// ProgramId::defines of a kernel. in_parts: the tets are in several buffers. starts_outside: no ray of an image starts

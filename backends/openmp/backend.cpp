@@ -1,5 +1,6 @@
 #include "backends/openmp/backend.h"
 
+#include "backends/openmp/defects.h"
 #include "backends/openmp/packet_session.h"
 #include "backends/openmp/probe.h"
 #include "backends/openmp/session.h"
@@ -12,11 +13,6 @@
 
 #include <omp.h>
 
-#include <bit>
-#include <cassert>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,31 +20,6 @@
 namespace tetrace {
 
 namespace {
-
-namespace {
-#define DEFECT_WORDS const uint *words,
-#define DEFECT_PASSED words,
-#define WORD(index) words[index]
-#include "kernels/language/dialect_cpp.h"
-
-#include "kernels/defects/defects.h"
-} // namespace
-
-/// Runs a reduced kernel (core/device/defects.h), as the compiler of this build made it. Throws Error{internal}
-/// where there is none of that name.
-std::vector<std::uint32_t> words_of_defect(std::string_view name, std::uint32_t items)
-{
-    const auto words = defect_words();
-    std::vector<std::uint32_t> results(items);
-#define DEFECT(kernel)                                                                                                 \
-    if (name == #kernel) {                                                                                             \
-        for (std::uint32_t item = 0; item < items; ++item)                                                             \
-            results[item] = kernel(words.data(), item);                                                                \
-        return results;                                                                                                \
-    }
-#include "kernels/defects/defect_list.inc"
-    throw Error(ErrorKind::internal, "openmp lacks the reduced kernel '" + std::string(name) + "'");
-}
 
 Device openmp_device()
 {
@@ -109,7 +80,7 @@ public:
     [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t, std::string_view name,
                                                         const DefectLaunch& launch) override
     {
-        return words_of_defect(name, launch.items);
+        return openmp::words_of_defect(name, launch);
     }
 
 private:

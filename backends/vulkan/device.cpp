@@ -105,7 +105,10 @@ void describe(const vk::raii::PhysicalDevice& device, FoundDevice& found)
         device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceIDProperties,
                               vk::PhysicalDeviceSubgroupProperties, vk::PhysicalDeviceMaintenance3Properties>();
     found.facts.uuid = hexadecimal(chain.get<vk::PhysicalDeviceIDProperties>().deviceUUID);
-    found.facts.group_width = chain.get<vk::PhysicalDeviceSubgroupProperties>().subgroupSize;
+    const auto& subgroups = chain.get<vk::PhysicalDeviceSubgroupProperties>();
+    found.facts.group_width = subgroups.subgroupSize;
+    found.has_ballots = (subgroups.supportedStages & vk::ShaderStageFlagBits::eCompute) &&
+                        (subgroups.supportedOperations & vk::SubgroupFeatureFlagBits::eBallot);
     found.limits.allocation_bytes = chain.get<vk::PhysicalDeviceMaintenance3Properties>().maxMemoryAllocationSize;
     found.facts.max_buffer_bytes = std::min(found.facts.max_buffer_bytes, found.limits.allocation_bytes);
     found.tells_cache_hits = has_extension(extensions, VK_EXT_PIPELINE_CREATION_FEEDBACK_EXTENSION_NAME);

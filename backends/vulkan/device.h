@@ -40,6 +40,7 @@ struct FoundDevice {
     VkPhysicalDevice handle = nullptr;
     Limits limits;
     RayTracing ray_tracing;
+    bool has_ballots = false;      ///< of subgroups, in compute shaders
     bool tells_cache_hits = false; ///< VK_EXT_pipeline_creation_feedback
     bool reads_texels = false;     ///< reads texel buffers faster than storage buffers
     bool selects_minima = false;   ///< selects the smaller of two numbers faster than its minimum does

@@ -84,7 +84,7 @@ LaunchCase defect_case(std::string_view name, const DefectLaunch& launch)
     LaunchCase made = case_of(vulkan_defects::embedded_kernels(), std::string(name), launch.groups());
     made.lines.push_back("CONSTANTS " + std::to_string(launch.group_items));
     made.lines.push_back("PUSHED 0");
-    const auto words = defect_words();
+    const auto words = defect_words(launch);
     made.inputs = {case_input("buffer, 0", "words", "what the kernel reads", std::as_bytes(std::span(words)))};
     made.output = 1;
     return made;

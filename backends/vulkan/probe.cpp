@@ -51,10 +51,22 @@ namespace vulkan_defects {
 
 namespace vulkan {
 
+namespace {
+
+void require_for_defect(const FoundDevice& device, std::string_view name)
+{
+    const Defect* const defect = find_defect(name);
+    if (defect != nullptr && defect->need == DefectNeed::ballots && !device.has_ballots)
+        throw Error(ErrorKind::unsupported, "its subgroups have no ballots in compute shaders");
+}
+
+} // namespace
+
 std::vector<std::uint32_t> run_defect(const Context& context, std::string_view name, const DefectLaunch& launch)
 {
-    std::vector<std::uint32_t> results(launch.items);
-    const auto words = defect_words();
+    require_for_defect(context.found(), name);
+    std::vector<std::uint32_t> results(output_words(name, launch));
+    const auto words = defect_words(launch);
     const std::span<std::byte> result_bytes = std::as_writable_bytes(std::span(results));
     const auto word_bytes = std::as_bytes(std::span(words));
     context.run("running " + std::string(name), word_bytes.size() + result_bytes.size(), [&] {
@@ -68,6 +80,7 @@ std::vector<std::uint32_t> run_defect(const Context& context, std::string_view n
         const Buffer staging =
             needs_staging(to) ? Buffer(context, result_bytes.size(), BufferUse::read_back) : Buffer();
         upload(context, from, word_bytes);
+        upload(context, to, result_bytes);
         program.bind(context, 0, from);
         program.bind(context, 1, to);
         const vk::raii::CommandBuffer commands = context.make_commands();

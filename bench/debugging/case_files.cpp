@@ -27,6 +27,7 @@ using CaseWords = std::vector<std::uint32_t>;
 /// What a program should write: its whole output, and how far each word may be off.
 struct CaseOutput {
     CaseWords expected, tolerances;
+    std::uint32_t before = POISON; ///< in each word before the launch
 };
 
 KernelFile words_file(const char* name, const char* what, const CaseWords& words)
@@ -50,7 +51,7 @@ DumpedCase files_of_case(const LaunchCase& launch, const CaseOutput& output, con
             made.files.push_back(input.file);
     }
     macros += fmt::format("\n#define OUTPUT {}\n#define OUTPUT_WORDS {}\n#define OUTPUT_BEFORE {:#x}u\n", launch.output,
-                          output.expected.size(), POISON);
+                          output.expected.size(), output.before);
     made.files.push_back(words_file("expected.bin", "the whole output after the launch, in words", output.expected));
     made.files.push_back(words_file("tolerance.bin",
                                     "how far each word may be off: t, u and v of a hit by 3 units in the last place, "
@@ -74,8 +75,9 @@ DumpedCase defect_case(const Backend& backend, std::string_view name)
     const auto launch = backend.defect_case(defect.name, chosen.launch);
     if (!launch) refuse_case(backend);
     CaseOutput output;
-    output.expected = expected_words(defect, chosen.launch.items);
+    output.expected = expected_words(defect, chosen.launch);
     output.tolerances.assign(output.expected.size(), 0);
+    output.before = 0;
     return files_of_case(*launch, output,
                          fmt::format("{} on {}: {}; {} {}", name, backend.name(), defect.what,
                                      defect.is_stressor ? "reports of the kind:" : "known in", defect.known));
@@ -119,7 +121,7 @@ CaseOutput output_of_tile(const LaunchParams& launch, const std::vector<Hit>& hi
     constexpr std::uint32_t division_ulps = 3; // SelfTest::allowed_ulps()
     const std::array<std::size_t, 1> rays = {hits.size()};
     const OutputParts parts(rays, HIT_WORDS);
-    CaseOutput output{CaseWords(parts.words(), POISON), CaseWords(parts.words(), 0)};
+    CaseOutput output{CaseWords(parts.words(), POISON), CaseWords(parts.words(), 0), POISON};
     for (const std::size_t ray : rays_of_tile(launch)) {
         const std::size_t word = GUARD_WORDS + HIT_WORDS * ray;
         std::memcpy(&output.expected[word], &hits[ray], sizeof(Hit));

@@ -19,15 +19,16 @@ namespace {
 
 void judge(DefectRun& run, const std::vector<std::uint32_t>& words)
 {
-    run.wrong = wrong_items(*run.defect, run.launch.items, words);
+    run.wrong = wrong_items(*run.defect, run.launch, words);
     if (run.wrong.empty()) {
-        if (run.defect->is_flushed != nullptr && words != expected_words(*run.defect, run.launch.items))
+        if (run.defect->is_flushed != nullptr && words != expected_words(*run.defect, run.launch))
             run.reason = "flushed: denormals count as zeros, which is allowed";
         return;
     }
     run.sight = DefectSight::seen;
     run.reason.clear();
     if (run.wrong.front() < words.size()) run.first_word = words[run.wrong.front()];
+    run.expected_word = expected_words(*run.defect, run.launch)[run.wrong.front()];
 }
 
 void run_on(DefectRun& run, Backend& runner)
@@ -41,7 +42,9 @@ void run_on(DefectRun& run, Backend& runner)
         }
     } catch (const Error& error) {
         if (error.kind() == ErrorKind::interrupted) throw;
-        run.sight = DefectSight::error;
+        const bool is_lacking = error.kind() == ErrorKind::unsupported && run.defect->need != DefectNeed::none;
+        run.sight = is_lacking ? DefectSight::skipped : DefectSight::error;
+        if (is_lacking) run.launch = {0, 0};
         run.kind = error.kind();
         run.reason = printable_text(error.what());
     } catch (const std::exception& error) {
@@ -185,9 +188,11 @@ std::string line_or_nothing(const ResultValue& object, const char* key)
     return value ? value->line() : std::string();
 }
 
-std::string wrong_text(std::uint64_t item, std::uint64_t word, std::uint64_t expected)
+/// place: in the output, which may have words of all groups after those of the items.
+std::string wrong_text(std::uint64_t place, std::uint64_t items, std::uint64_t word, std::uint64_t expected)
 {
-    return fmt::format("item {} returns {} instead of {}", item, word, expected);
+    if (place >= items) return fmt::format("word {} is {} instead of {}", place, word, expected);
+    return fmt::format("item {} returns {} instead of {}", place, word, expected);
 }
 
 /// Of a stressor: the launch that was wrong or failed, to append; nothing if there was none.
@@ -224,15 +229,18 @@ ShownRun read_run(const ResultValue& value)
     const auto count = value.find("wrong"); // wrong_items has only the first
     run.wrong = count ? count->count() : value.at("wrong_items").items().size();
     const ResultValue first = value.at("first_wrong");
-    run.detail = wrong_text(first.at("item").count(), first.at("word").count(), first.at("expected").count()) + launch;
+    run.detail =
+        wrong_text(first.at("item").count(), run.items, first.at("word").count(), first.at("expected").count()) +
+        launch;
     return run;
 }
 
 std::string cell_text(const ShownRun& run)
 {
     if (!run.is_seen()) return run.outcome;
-    return fmt::format("{}: {} of {} items", run.is_known ? "known" : "SEEN", with_commas(run.wrong),
-                       with_commas(run.items));
+    const std::string_view seen = run.is_known ? "known" : "SEEN";
+    if (run.wrong > run.items) return fmt::format("{}: {} words", seen, with_commas(run.wrong));
+    return fmt::format("{}: {} of {} items", seen, with_commas(run.wrong), with_commas(run.items));
 }
 
 /// "defect/loop_of_70000_iterations": its name among test cases and deviations.
@@ -325,7 +333,7 @@ nlohmann::json run_json(const DefectRun& run)
     constexpr std::size_t max_listed = 64;
     object["wrong_items"] = std::vector(run.wrong.begin(), run.wrong.begin() + std::min(run.wrong.size(), max_listed));
     object["wrong"] = run.wrong.size();
-    object["first_wrong"] = {{"item", item}, {"word", run.first_word}, {"expected", run.defect->expected(item)}};
+    object["first_wrong"] = {{"item", item}, {"word", run.first_word}, {"expected", run.expected_word}};
     return object;
 }
 
@@ -349,7 +357,7 @@ std::string detail_of(const DefectRun& run)
     if (run.sight == DefectSight::error) return run.reason + launch;
     if (run.sight != DefectSight::seen) return run.reason;
     const std::uint32_t item = run.wrong.front();
-    return wrong_text(item, run.first_word, run.defect->expected(item)) + launch;
+    return wrong_text(item, run.launch.items, run.first_word, run.expected_word) + launch;
 }
 
 CaseOutcome outcome_of(const DefectRun& run)

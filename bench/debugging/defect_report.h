@@ -14,7 +14,8 @@
 
 namespace tetrace {
 
-/// What a driver showed of a defect. skipped: it did not run, because no device is usable.
+/// What a driver showed of a defect. skipped: it did not run, because the device is not usable, or lacks what the
+/// kernel needs.
 enum class DefectSight { not_seen, seen, skipped, error };
 template <>
 inline constexpr auto enum_names<DefectSight> = names_up_to<DefectSight::error>("not seen", "seen", "skipped", "error");
@@ -27,8 +28,9 @@ struct DefectRun {
     const Defect* defect = nullptr;
     DefectLaunch launch{0, 0}; ///< the last one: the first that was wrong or failed, if one was; 0 if there was none
     DefectSight sight = DefectSight::not_seen;
-    std::vector<std::uint32_t> wrong;     ///< items with another word than the expected one
-    std::uint32_t first_word = 0;         ///< what the first of them returned
+    std::vector<std::uint32_t> wrong;     ///< places in the output of words other than the expected ones
+    std::uint32_t first_word = 0;         ///< the first of them
+    std::uint32_t expected_word = 0;      ///< what it should be
     std::string reason;                   ///< of skipped and error; of not_seen, that denormals were flushed
     ErrorKind kind = ErrorKind::internal; ///< of error
     double seconds = 0;                   ///< compiling included

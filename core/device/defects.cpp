@@ -1,6 +1,7 @@
 #include "core/device/defects.h"
 
 #include "core/device/stressors.h"
+#include "kernels/layouts/defect_words.h"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +13,7 @@ namespace tetrace {
 
 namespace {
 
-constexpr std::uint32_t word_count = 64;
+constexpr std::uint32_t word_count = DEFECT_WORD_COUNT;
 
 std::uint32_t own_number(std::uint32_t item)
 {
@@ -93,6 +94,8 @@ std::span<const Defect> all_defects()
         };
         const auto stressing = all_stressors();
         all.insert(all.end(), stressing.begin(), stressing.end());
+        const auto grouped = group_stressors();
+        all.insert(all.end(), grouped.begin(), grouped.end());
         return all;
     }();
     return defects;
@@ -104,10 +107,9 @@ constexpr std::uint32_t max_groups = 65'535;
 std::optional<ChosenDefect> chosen_defect(std::string_view text)
 {
     const auto colon = text.find(':');
-    const auto defects = all_defects();
-    const auto defect = std::ranges::find(defects, text.substr(0, colon), &Defect::name);
-    if (defect == defects.end()) return std::nullopt;
-    if (colon == std::string_view::npos) return ChosenDefect{&*defect, defect->case_launch()};
+    const Defect* const defect = find_defect(text.substr(0, colon));
+    if (defect == nullptr) return std::nullopt;
+    if (colon == std::string_view::npos) return ChosenDefect{defect, defect->case_launch()};
     DefectLaunch launch;
     const char* const end = text.data() + text.size();
     const auto items = std::from_chars(text.data() + colon + 1, end, launch.items);
@@ -117,14 +119,28 @@ std::optional<ChosenDefect> chosen_defect(std::string_view text)
     const bool is_within = launch.items >= 1 && launch.items <= largest.items && launch.group_items >= 1 &&
                            launch.group_items <= largest.group_items && launch.groups() <= max_groups;
     if (group.ec != std::errc() || group.ptr != end || !is_within) return std::nullopt;
-    return ChosenDefect{&*defect, launch};
+    return ChosenDefect{defect, launch};
 }
 
-std::vector<std::uint32_t> defect_words()
+const Defect* find_defect(std::string_view name)
+{
+    const auto defects = all_defects();
+    const auto defect = std::ranges::find(defects, name, &Defect::name);
+    return defect == defects.end() ? nullptr : &*defect;
+}
+
+std::vector<std::uint32_t> defect_words(const DefectLaunch& launch)
 {
     std::vector<std::uint32_t> counting(word_count);
     std::iota(counting.begin(), counting.end(), 0u);
+    counting.push_back(launch.items);
     return counting;
+}
+
+std::size_t output_words(std::string_view name, const DefectLaunch& launch)
+{
+    const Defect* const defect = find_defect(name);
+    return std::size_t{launch.items} + (defect == nullptr ? 0 : defect->shared_words);
 }
 
 std::span<const DefectLaunch> Defect::launches() const
@@ -141,23 +157,26 @@ DefectLaunch Defect::case_launch() const
     return is_stressor ? DefectLaunch{64, 64} : DefectLaunch{};
 }
 
-std::vector<std::uint32_t> expected_words(const Defect& defect, std::uint32_t items)
+std::vector<std::uint32_t> expected_words(const Defect& defect, const DefectLaunch& launch)
 {
+    if (defect.expected_output != nullptr) return defect.expected_output(launch);
     std::vector<std::uint32_t> words;
-    for (std::uint32_t item = 0; item < items; ++item)
+    for (std::uint32_t item = 0; item < launch.items; ++item)
         words.push_back(defect.expected(item));
     return words;
 }
 
-std::vector<std::uint32_t> wrong_items(const Defect& defect, std::uint32_t items, std::span<const std::uint32_t> found)
+std::vector<std::uint32_t> wrong_items(const Defect& defect, const DefectLaunch& launch,
+                                       std::span<const std::uint32_t> found)
 {
-    const auto is_right = [&](std::uint32_t item) {
-        return found[item] == defect.expected(item) ||
-               (defect.is_flushed != nullptr && defect.is_flushed(item, found[item]));
+    const auto expected = expected_words(defect, launch);
+    const auto is_right = [&](std::uint32_t place) {
+        return found[place] == expected[place] ||
+               (defect.is_flushed != nullptr && defect.is_flushed(place, found[place]));
     };
     std::vector<std::uint32_t> wrong;
-    for (std::uint32_t item = 0; item < items; ++item)
-        if (found.size() != items || !is_right(item)) wrong.push_back(item);
+    for (std::uint32_t place = 0; place < expected.size(); ++place)
+        if (found.size() != expected.size() || !is_right(place)) wrong.push_back(place);
     return wrong;
 }
 

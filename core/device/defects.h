@@ -16,16 +16,24 @@ struct DefectLaunch {
     [[nodiscard]] std::uint32_t groups() const { return (items + group_items - 1) / group_items; }
 };
 
+/// What a stressor needs that not every device has: ballots of subgroups; a fence between groups.
+enum class DefectNeed { none, ballots, fences };
+
 /// A defect of a driver's compiler, reduced to a small kernel (kernels/defects/defects.h, in every language), or a
-/// stressor (kernels/defects/stressors.h). Each item returns a word.
+/// stressor (kernels/defects/stressors.h). Each item returns a word; of some stressors, all groups together return
+/// more.
 struct Defect {
     std::string_view name;  ///< of its kernel
     std::string_view what;  ///< what the kernel does
     std::string_view known; ///< where the defect was met; of a stressor, public reports of its kind
-    std::uint32_t (*expected)(std::uint32_t item);
+    std::uint32_t (*expected)(std::uint32_t item); ///< null: see expected_output
     bool is_stressor = false;
     /// Whether the item may return this word on a device that flushes denormals. Null: of no arithmetic on denormals.
     bool (*is_flushed)(std::uint32_t item, std::uint32_t word) = nullptr;
+    /// Of a kernel whose items share memory (kernels/defects/group_stressors.h): the whole output. Else null.
+    std::vector<std::uint32_t> (*expected_output)(const DefectLaunch& launch) = nullptr;
+    std::uint32_t shared_words = 0; ///< of all groups, in the output after those of the items
+    DefectNeed need = DefectNeed::none;
 
     /// Those to be run: one group of 16 for a reduced kernel; for a stressor 1 to 10^6 items, in groups of several
     /// sizes.
@@ -46,14 +54,20 @@ struct ChosenDefect {
 /// a group. Empty if there is no such kernel, or if its launch is larger than any of launches().
 [[nodiscard]] std::optional<ChosenDefect> chosen_defect(std::string_view text);
 
-/// The words that every kernel reads: 0, 1, ... 63.
-[[nodiscard]] std::vector<std::uint32_t> defect_words();
+/// Null if there is none of that name.
+[[nodiscard]] const Defect* find_defect(std::string_view name);
 
-/// The words of items 0 to items - 1.
-[[nodiscard]] std::vector<std::uint32_t> expected_words(const Defect& defect, std::uint32_t items);
+/// The words that every kernel reads: 0, 1, ... 63, and the number of items.
+[[nodiscard]] std::vector<std::uint32_t> defect_words(const DefectLaunch& launch);
 
-/// The items whose word is neither the expected one nor a flushed one; all of them if the numbers of words differ.
-[[nodiscard]] std::vector<std::uint32_t> wrong_items(const Defect& defect, std::uint32_t items,
+/// How many words the kernel of that name writes, which begin as zeros: its items', then those of all groups.
+[[nodiscard]] std::size_t output_words(std::string_view name, const DefectLaunch& launch);
+
+/// Those words.
+[[nodiscard]] std::vector<std::uint32_t> expected_words(const Defect& defect, const DefectLaunch& launch);
+
+/// Which words are neither the expected one nor a flushed one; all of them if the numbers of words differ.
+[[nodiscard]] std::vector<std::uint32_t> wrong_items(const Defect& defect, const DefectLaunch& launch,
                                                      std::span<const std::uint32_t> words);
 
 } // namespace tetrace

@@ -6,7 +6,10 @@
 
 namespace tetrace {
 
-/// Those of all_defects() that are stressors, the kernels of kernels/defects/stressors.h.
+/// Those of all_defects() that are kernels of kernels/defects/stressors.h.
 [[nodiscard]] std::span<const Defect> all_stressors();
+
+/// Those that are kernels of kernels/defects/group_stressors.h and lane_stressors.h.
+[[nodiscard]] std::span<const Defect> group_stressors();
 
 } // namespace tetrace

@@ -65,9 +65,11 @@ private:
             answer.put_all(std::span<const std::uint32_t>(words));
         } else if (what == Request::run_defect) {
             const auto launch = request.get<DefectLaunch>();
-            const auto words = backend_->run_defect(device, request.get_text(), launch);
-            const SharedMemory memory(std::move(file), launch.items * sizeof(words[0]));
-            const auto bytes = std::as_bytes(std::span(words).first(std::min<std::size_t>(words.size(), launch.items)));
+            const std::string name = request.get_text();
+            const auto words = backend_->run_defect(device, name, launch);
+            const std::size_t count = output_words(name, launch);
+            const SharedMemory memory(std::move(file), count * sizeof(words[0]));
+            const auto bytes = std::as_bytes(std::span(words).first(std::min(words.size(), count)));
             std::ranges::copy(bytes, memory.bytes().begin());
             answer.put(std::uint64_t{bytes.size()});
         } else if (what == Request::compiled) {

@@ -265,7 +265,7 @@ std::vector<std::uint32_t> IsolatedBackend::run_defect(std::size_t device, std::
     request.put(std::uint64_t{device});
     request.put(launch);
     request.put_text(name);
-    const SharedMemory memory(launch.items * sizeof(std::uint32_t));
+    const SharedMemory memory(output_words(name, launch) * sizeof(std::uint32_t));
     const auto bytes = child_of(device)
                            ->call({"running the reduced kernel " + std::string(name), request, memory.file(),
                                    call_limit_s(launch.items, memory.bytes().size())})

@@ -1,19 +1,25 @@
-// A stressor of a faulty text, or that a compiler may change: CMakeLists.txt gives FAULT, its number; STRESSOR and
-// TEXT.
+// A stressor of a faulty text, or that a compiler may change: CMakeLists.txt gives FAULT, its number; TEXT; and its
+// name as DEFECT or GROUP_DEFECT.
 #include "core/device/backend.h"
 #include "core/device/defects.h"
+#include "kernels/layouts/defect_words.h"
 
+#include <array>
+#include <atomic>
 #include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <thread>
 
 namespace {
 #define DEFECT_WORDS const uint *words,
 #define DEFECT_PASSED words,
 #define WORD(index) words[index]
 #include "kernels/language/dialect_cpp.h"
+
+#include "kernels/language/group_cpp.h"
 
 // What a device that flushes denormals returns.
 KERNEL_FN uint flushed_bits(real value)
@@ -28,12 +34,21 @@ KERNEL_FN uint flushed_bits(real value)
 
 namespace tetrace::faults {
 
-std::vector<std::uint32_t> FAULT(std::uint32_t items)
+std::vector<std::uint32_t> FAULT(const DefectLaunch& launch)
 {
-    const auto words = defect_words();
+    const auto words = defect_words(launch);
+#ifdef GROUP_DEFECT
+#define TEXT_OF(name) #name
+#define NAME_OF(name) TEXT_OF(name)
+    std::vector<std::uint32_t> results(output_words(NAME_OF(GROUP_DEFECT), launch));
+    std::array<std::uint32_t, LOCAL_WORDS> memory;
+    for (std::uint32_t group = 0; group < launch.groups(); ++group)
+        GROUP_DEFECT(words.data(), results.data(), memory.data(), launch.items, group, launch.group_items);
+#else
     std::vector<std::uint32_t> results;
-    for (std::uint32_t item = 0; item < items; ++item)
-        results.push_back(STRESSOR(words.data(), item));
+    for (std::uint32_t item = 0; item < launch.items; ++item)
+        results.push_back(DEFECT(words.data(), item));
+#endif
     return results;
 }
 

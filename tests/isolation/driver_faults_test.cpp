@@ -144,6 +144,19 @@ TEST_F(DriverFaults, hang_ends_at_its_limit)
     EXPECT_TRUE(contains(ended.out, "gave no answer for 15 s, and was ended, while launching cdt/maria/tet80"));
 }
 
+TEST_F(DriverFaults, hang_of_a_stressor_is_its_rows_error_with_its_launch_and_the_next_ones_run)
+{
+    if (!has("opencl")) GTEST_SKIP() << "an OpenCL device is missing";
+    const ScopedVariable faulty("FAULTY_OPENCL", "launch:70 hang"); // the fifth of a stressor
+    const ScopedVariable preload("LD_PRELOAD", TETRACE_FAULTY_OPENCL);
+    const Ended ended = run("check --stress --backend opencl --driver-limit 15");
+    EXPECT_EQ(ended.code, 1) << ended.errors;
+    const std::string text = unwrapped(ended.out);
+    EXPECT_TRUE(contains(text, "gave no answer for 15 s, and was ended, while running the reduced kernel")) << text;
+    EXPECT_TRUE(std::regex_search(text, std::regex("\\(dump --defect [a-z_]+:1000000:128\\)"))) << text;
+    EXPECT_TRUE(contains(text, " 1 errors")) << text;
+}
+
 TEST_F(DriverFaults, version_of_the_future_is_used_and_one_that_is_no_text_is_no_crash)
 {
     if (!has("opencl")) GTEST_SKIP() << "an OpenCL device is missing";

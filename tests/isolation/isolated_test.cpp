@@ -314,6 +314,8 @@ TEST_F(Hung, driver_is_ended_at_its_limit_and_other_sessions_go_on)
     for (const char* call : {"open", "launch", "wait", "read"})
         EXPECT_TRUE(contains(error_of([&] { use(*open(std::string(call) + " hang"), 1); }),
                              "gave no answer for 0.4 s, and was ended, while"));
+    EXPECT_TRUE(contains(error_of([&] { (void)backend_->run_defect(0, "run_defect hang", {}); }),
+                         "gave no answer for 0.4 s, and was ended, while running the reduced kernel"));
     EXPECT_EQ(use(*bystander, 3), before);
     EXPECT_GT(call_limit_s(1'000'000), 2 * call_limit_s(0));
 }

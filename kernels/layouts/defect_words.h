@@ -1,0 +1,8 @@
+// What reduced kernels and stressors (kernels/defects) are given.
+#ifndef TETRACE_KERNELS_LAYOUTS_DEFECT_WORDS_H
+#define TETRACE_KERNELS_LAYOUTS_DEFECT_WORDS_H
+
+#define DEFECT_WORD_COUNT 64u // the words 0, 1, ... that they read; the number of items follows
+#define LOCAL_WORDS 257u      // memory of a work group: a word, and two for each of 128 items
+
+#endif
