@@ -68,6 +68,39 @@ private:
     std::unordered_map<Cell, std::vector<std::uint32_t>, TripleHash> cells_;
 };
 
+// The slab of a triangle's plane and the lines of its sides in it, to see quickly that another triangle is away.
+class Slab {
+public:
+    Slab(Double3 a, Double3 b, Double3 c)
+    {
+        const Double3 across = cross(b - a, c - a);
+        const double longest = std::max({dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)});
+        if (length(across) < 0x1p-20 * longest) return; // of a sliver, double precision has no sound plane
+        const Double3 normal = normalized(across);
+        add(normal, a), add(normal * -1.0, a);
+        add(normalized(cross(b - a, normal)), a), add(normalized(cross(c - b, normal)), b);
+        add(normalized(cross(a - c, normal)), c);
+    }
+    // Whether all corners are further than that beyond one of its bounds.
+    [[nodiscard]] bool excludes(const std::array<Double3, 3>& corners, double distance) const
+    {
+        return std::any_of(bounds_.begin(), bounds_.begin() + count_, [&](const Bound& bound) {
+            return std::ranges::all_of(
+                corners, [&](Double3 corner) { return dot(bound.outwards, corner) - bound.offset > distance; });
+        });
+    }
+
+private:
+    struct Bound {
+        Double3 outwards;
+        double offset;
+    };
+    void add(Double3 outwards, Double3 through) { bounds_[count_++] = {outwards, dot(outwards, through)}; }
+
+    std::array<Bound, 5> bounds_{};
+    std::uint32_t count_ = 0;
+};
+
 class ContactFinder {
 public:
     ContactFinder(TriangleMesh& mesh, double tolerance, const std::vector<bool>& chosen)
@@ -112,16 +145,28 @@ private:
     [[nodiscard]] std::vector<Edge> near_pairs() const
     {
         std::vector<GrownBox> boxes;
-        for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i)
+        std::vector<Slab> slabs;
+        for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i) {
+            const auto [a, b, c] = corners(i);
+            slabs.emplace_back(a, b, c);
             if (chosen_[i]) boxes.emplace_back(grown_box(i, 0.51), i);
+        }
+        // A vertex near both may be between them.
+        const double away = 2.1 * tolerance_;
         std::vector<Edge> pairs;
         CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const GrownBox& a, const GrownBox& b) {
-            pairs.push_back(edge_of(a.info(), b.info()));
+            if (!slabs[a.info()].excludes(corners(b.info()), away) && !slabs[b.info()].excludes(corners(a.info()), away))
+                pairs.push_back(edge_of(a.info(), b.info()));
         });
         std::ranges::sort(pairs);
         return pairs;
     }
 
+    [[nodiscard]] std::array<Double3, 3> corners(std::uint32_t triangle) const
+    {
+        const auto [a, b, c] = mesh_.triangles[triangle];
+        return {at(a), at(b), at(c)};
+    }
     [[nodiscard]] Double3 at(std::uint32_t vertex) const { return to_double(places_.points[vertex]); }
 
     void add_to(const Edge& edge, std::uint32_t vertex)

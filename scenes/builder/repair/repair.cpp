@@ -74,6 +74,40 @@ void weld_all(Stage& stage)
     weld(stage, std::vector<bool>(stage.scene.mesh.triangles.size(), true));
 }
 
+using Corners = std::array<std::array<float, 3>, 3>;
+
+// A triangle as a set of points, which keeps when vertices are numbered anew.
+Corners corners_of(const TriangleMesh& mesh, std::uint32_t triangle)
+{
+    Corners corners;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Float3 v = mesh.vertices[mesh.triangles[triangle][i]];
+        corners[i] = {v.x, v.y, v.z};
+    }
+    std::ranges::sort(corners);
+    return corners;
+}
+
+// The triangles that cross none.
+std::vector<Corners> sound_triangles(const Stage& stage)
+{
+    const std::vector<bool> crossing = crossing_triangles(stage);
+    std::vector<Corners> sound;
+    for (std::uint32_t i = 0; i < crossing.size(); ++i)
+        if (!crossing[i]) sound.push_back(corners_of(stage.scene.mesh, i));
+    std::ranges::sort(sound);
+    return sound;
+}
+
+// Two triangles that a pass left as they were, and that crossed none, cross none after it.
+std::vector<TrianglePair> pairs_after_pass(const TriangleMesh& mesh, const std::vector<Corners>& sound)
+{
+    std::vector<bool> is_new(mesh.triangles.size());
+    for (std::uint32_t i = 0; i < is_new.size(); ++i)
+        is_new[i] = !std::ranges::binary_search(sound, corners_of(mesh, i));
+    return intersecting_pairs(mesh, is_new);
+}
+
 // A pass, and what pairs cross after it.
 void make_pass(Stage& stage, void (*change)(Stage&), const std::function<void(const std::string&)>& tell)
 {
@@ -85,10 +119,11 @@ void make_pass(Stage& stage, void (*change)(Stage&), const std::function<void(co
                                              : fmt::format(" with a tolerance of {:.1e}",
                                                            in_mesh_units(info.tolerance, stage.scene.build)),
                          info.passes, stage.pairs.size()));
+    const std::vector<Corners> sound = sound_triangles(stage);
     change(stage);
     const CleanUp cleaned = clean_up(stage.scene.mesh, stage.scene.origins);
     info.dropped += cleaned.degenerate_triangles + cleaned.duplicate_triangles;
-    stage.pairs = intersecting_pairs(stage.scene.mesh);
+    stage.pairs = pairs_after_pass(stage.scene.mesh, sound);
 }
 
 // Passes until no pair crosses, or until they lead nowhere. is_worth_it: whether one more is, after a pass at whose

@@ -58,14 +58,7 @@ public:
                    CGAL::do_intersect(edge(b[1], b[2]), triangle(a));
         return folded(points_[a[0]], points_[a[1]], points_[a[2]], points_[b[2]]);
     }
-    [[nodiscard]] std::vector<Box> boxes() const
-    {
-        std::vector<Box> boxes;
-        boxes.reserve(mesh_.triangles.size());
-        for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i)
-            boxes.emplace_back(triangle(mesh_.triangles[i]).bbox(), i);
-        return boxes;
-    }
+    [[nodiscard]] Box box(std::uint32_t number) const { return {triangle(mesh_.triangles[number]).bbox(), number}; }
 
 private:
     [[nodiscard]] Kernel::Triangle_3 triangle(const Triple& t) const
@@ -96,16 +89,25 @@ std::string corners_text(const Scene& scene, std::uint32_t triangle)
     return text;
 }
 
-// Calls what(pair) for each, in no order.
+// Calls what(pair) for each that has a new triangle, in no order.
 template <class What>
-void for_each_pair(const TriangleMesh& mesh, const What& what)
+void for_each_pair(const TriangleMesh& mesh, const std::vector<bool>& is_new, const What& what)
 {
     const PairTest test(mesh);
-    std::vector<Box> boxes = test.boxes();
-    CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) {
+    std::vector<Box> changed, kept;
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i)
+        (is_new[i] ? changed : kept).push_back(test.box(i));
+    const auto try_pair = [&](const Box& a, const Box& b) {
         const auto [low, high] = std::minmax({a.info(), b.info()});
         if (test.meet_elsewhere(low, high)) what(TrianglePair{low, high});
-    });
+    };
+    CGAL::box_self_intersection_d(changed.begin(), changed.end(), try_pair);
+    CGAL::box_intersection_d(changed.begin(), changed.end(), kept.begin(), kept.end(), try_pair);
+}
+
+std::vector<bool> all_of(const TriangleMesh& mesh)
+{
+    return std::vector<bool>(mesh.triangles.size(), true);
 }
 
 } // namespace
@@ -113,7 +115,7 @@ void for_each_pair(const TriangleMesh& mesh, const What& what)
 SelfIntersections find_self_intersections(const TriangleMesh& mesh, std::size_t listed)
 {
     SelfIntersections found;
-    for_each_pair(mesh, [&](const TrianglePair& pair) {
+    for_each_pair(mesh, all_of(mesh), [&](const TrianglePair& pair) {
         ++found.count;
         found.first.insert(std::upper_bound(found.first.begin(), found.first.end(), pair), pair);
         if (found.first.size() > listed) found.first.pop_back();
@@ -123,8 +125,13 @@ SelfIntersections find_self_intersections(const TriangleMesh& mesh, std::size_t 
 
 std::vector<TrianglePair> intersecting_pairs(const TriangleMesh& mesh)
 {
+    return intersecting_pairs(mesh, all_of(mesh));
+}
+
+std::vector<TrianglePair> intersecting_pairs(const TriangleMesh& mesh, const std::vector<bool>& is_new)
+{
     std::vector<TrianglePair> pairs;
-    for_each_pair(mesh, [&](const TrianglePair& pair) { pairs.push_back(pair); });
+    for_each_pair(mesh, is_new, [&](const TrianglePair& pair) { pairs.push_back(pair); });
     std::sort(pairs.begin(), pairs.end());
     return pairs;
 }

@@ -24,6 +24,9 @@ struct SelfIntersections {
 /// All such pairs, in lexicographic order.
 [[nodiscard]] std::vector<TrianglePair> intersecting_pairs(const TriangleMesh& mesh);
 
+/// Of these, the pairs with one or two new triangles. is_new: of each triangle.
+[[nodiscard]] std::vector<TrianglePair> intersecting_pairs(const TriangleMesh& mesh, const std::vector<bool>& is_new);
+
 /// Sentences for a person: the count, the pairs with their numbers in the source and their corners in the
 /// coordinates of the mesh's file, and what to do.
 [[nodiscard]] std::string describe(const SelfIntersections& found, const Scene& scene);
