@@ -1,5 +1,6 @@
 // Task absorb in a uniform medium, whose answers have a closed form, and its exponential, for every argument.
 #include "bench/truth/absorption.h"
+#include "scenes/procedural.h"
 #include "tests/support/crossed_tets.h"
 #include "tests/support/domain_chord.h"
 #include "tests/support/hard_rays.h"
@@ -21,7 +22,7 @@ constexpr std::uint32_t uniform_value = 200;
 #define KERNEL_METHOD_HEADER "kernels/methods/project.h"
 #undef DENSITY_OF // of another kernel in this unity build
 #undef VALUE_OF
-#define DENSITY_OF(tet) uniform_density
+#define DENSITY_OF(tet) (static_cast<void>(tet), uniform_density)
 #define VALUE_OF(tet) uniform_value
 namespace tetrace::test::uniform {
 namespace {

@@ -2,6 +2,7 @@
 // caught.
 #include "bench/truth/absorption.h"
 
+#include "bench/truth/hit_checks.h"
 #include "bench/truth/tally.h"
 #include "tests/support/crossed_tets.h"
 #include "tests/support/hard_rays.h"
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 using namespace tetrace;
 using namespace tetrace::test;
