@@ -26,9 +26,10 @@
 // ENOUGH_LANES                                    refill_cuda.h, tests         refill_cuda.h
 // TAKES_RAYS, STARTS_IN_TETS                      methods, entry.h, bvh        entry files: which tasks there are
 // SEARCHES_EXITS                                  search.h                     entry files
-// CROSSES_TETS                                    segments.h                   entry files
+// CROSSES_TETS                                    segments.h                   entry files: segments, tally, absorb
 // ADD_TO_SUM, LENGTH_SUMS, NO_SUMS, HAS_SUMS      entry files with task tally   segments.h
 // NOTE_BEGIN, NOTE_CROSSING                       recording builds             segments.h
+// DENSITY_OF, VALUE_OF                            absorption.h, tests          absorption.h
 // COUNT_SIGN, COUNT_SEARCH                        tests, counting builds       signs.h, entry_on_path.h
 // COUNT_NODE, COUNT_TRIANGLE                      tests, counting builds       bvh.h
 // clang-format on

@@ -172,14 +172,15 @@ extern "C" __global__ void ENTRY(rays_persistent_, KERNEL_NAME)(SceneView scene,
 #endif
 
 #ifdef CROSSES_TETS
-// The segments of one given ray per thread, one tile per block. sums: as cross_tets() has them.
-KERNEL_FN void cross_from_pixel(SceneView scene, LaunchParams launch, LENGTH_SUMS sums, uint* output,
+// The segments of one given ray per thread, one tile per block. sums, absorbs: as cross_tets() has them.
+KERNEL_FN void cross_from_pixel(SceneView scene, LaunchParams launch, LENGTH_SUMS sums, bool absorbs, uint* output,
                                 const uint4* __restrict__ rays)
 {
     Pixel pixel = pixel_of(launch, launch.first_tile + blockIdx.x, threadIdx.x);
     if (!is_in_image(launch, pixel)) return;
     uint ray = ray_index(pixel);
-    Segments all = cross_tets(scene, launch.trace, sums, __ldg(rays + ray), __ldg(rays + ray_count(launch) + ray));
+    Segments all =
+        cross_tets(scene, launch.trace, sums, absorbs, __ldg(rays + ray), __ldg(rays + ray_count(launch) + ray));
     uint2* pairs = reinterpret_cast<uint2*>(output + output_word(launch, pixel));
     pairs[0] = make_uint2(all.first, all.last);
     pairs[1] = make_uint2(all.total, all.hash);
@@ -189,13 +190,19 @@ KERNEL_FN void cross_from_pixel(SceneView scene, LaunchParams launch, LENGTH_SUM
 extern "C" __global__ void ENTRY(segments_tiles_, KERNEL_NAME)(SceneView scene, LaunchParams launch, uint* output,
                                                                const uint4* __restrict__ rays)
 {
-    cross_from_pixel(scene, launch, NO_SUMS, output, rays);
+    cross_from_pixel(scene, launch, NO_SUMS, false, output, rays);
 }
 
 extern "C" __global__ void ENTRY(tally_tiles_, KERNEL_NAME)(SceneView scene, LaunchParams launch, uint* output,
                                                             const uint4* __restrict__ rays)
 {
-    cross_from_pixel(scene, launch, output + GUARD_WORDS + HIT_WORDS * ray_count(launch), output, rays);
+    cross_from_pixel(scene, launch, output + GUARD_WORDS + HIT_WORDS * ray_count(launch), false, output, rays);
+}
+
+extern "C" __global__ void ENTRY(absorb_tiles_, KERNEL_NAME)(SceneView scene, LaunchParams launch, uint* output,
+                                                             const uint4* __restrict__ rays)
+{
+    cross_from_pixel(scene, launch, NO_SUMS, true, output, rays);
 }
 #endif
 

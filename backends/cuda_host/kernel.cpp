@@ -61,6 +61,11 @@ void ENTRY(run_tally_tiles_, KERNEL_NAME)(void** arguments)
 {
     call(ENTRY(tally_tiles_, KERNEL_NAME), arguments);
 }
+
+void ENTRY(run_absorb_tiles_, KERNEL_NAME)(void** arguments)
+{
+    call(ENTRY(absorb_tiles_, KERNEL_NAME), arguments);
+}
 #endif
 
 #ifdef SEARCHES_EXITS

@@ -1,6 +1,6 @@
 // A kernel as an OpenCL program (CMakeLists.txt): a thin entry around the shared text. Build options (session.cpp):
 // GROUP_ITEMS, the items of a work group, which traces one tile at a time; PERSISTENT for that schedule; RAYS, SEARCH,
-// SEGMENTS and TALLY for those tasks; STARTS_OUTSIDE if no ray of an image begins in a tet; MATH_FAST; TETS_IN_PARTS;
+// SEGMENTS, TALLY and ABSORB for those tasks; STARTS_OUTSIDE if no ray of an image begins in a tet; MATH_FAST; TETS_IN_PARTS;
 // STACK_TOP, where stacks begin in local memory.
 #include "kernels/language/dialect_opencl.h"
 
@@ -28,7 +28,7 @@ KERNEL_FN void run_item(SceneView scene, LaunchParams launch, uint tile, __globa
     output[GUARD_WORDS + ray] = search_exit(scene, rays[ray], rays[count + ray], rays[2u * count + ray]);
 #else
     __global uint2* pairs = (__global uint2*)(output + output_word(launch, pixel));
-#if defined(SEGMENTS) || defined(TALLY)
+#if defined(SEGMENTS) || defined(TALLY) || defined(ABSORB)
     uint ray = ray_index(pixel);
     uint count = ray_count(launch);
 #ifdef TALLY
@@ -36,7 +36,12 @@ KERNEL_FN void run_item(SceneView scene, LaunchParams launch, uint tile, __globa
 #else
     LENGTH_SUMS sums = NO_SUMS;
 #endif
-    Segments all = cross_tets(scene, launch.trace, sums, rays[ray], rays[count + ray]);
+#ifdef ABSORB
+    bool absorbs = true;
+#else
+    bool absorbs = false;
+#endif
+    Segments all = cross_tets(scene, launch.trace, sums, absorbs, rays[ray], rays[count + ray]);
     pairs[0] = (uint2)(all.first, all.last);
     pairs[1] = (uint2)(all.total, all.hash);
     pairs[2] = (uint2)(all.reversed, all.crossings);

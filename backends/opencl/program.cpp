@@ -46,7 +46,7 @@ std::string defines_of(const KernelId& kernel, unsigned tile_height, bool in_par
     std::string defines = "-DGROUP_ITEMS=" + std::to_string(TILE_WIDTH * tile_height);
     if (kernel.schedule == Schedule::persistent) defines += " -DPERSISTENT";
     if (traits_of(kernel.task).takes_rays) {
-        defines += " -D"; // RAYS, SEARCH, SEGMENTS, TALLY
+        defines += " -D"; // RAYS, SEARCH, SEGMENTS, TALLY, ABSORB
         std::ranges::transform(name_of(kernel.task), std::back_inserter(defines),
                                [](char c) { return std::toupper(c); });
     }

@@ -1,6 +1,6 @@
 // One kernel, compiled once per kernel and math mode (CMakeLists.txt), which are given by macros:
 // KERNEL_STRUCTURE_HEADER and the like, and KERNEL_NAME. BVH kernels are compiled once more with COUNTS_VISITS, to
-// count, and kernels of task segments with NOTES_CROSSINGS, to note each tet; these are never timed.
+// count, and kernels of tasks that cross tets with NOTES_CROSSINGS, to note each tet; these are never timed.
 #include "backends/openmp/kernels.h"
 #include "core/device/host.h"
 #include "core/device/launch.h"
@@ -72,6 +72,7 @@ void for_pixels(const tetrace::PackedScene& packed, const tetrace::TraceJob& job
 }
 
 #if defined(CROSSES_TETS) && !defined(NOTES_CROSSINGS)
+template <bool absorbs>
 void cross_all(const tetrace::PackedScene& packed, std::span<const tetrace::Quad> rays, const tetrace::TraceJob& job,
                std::span<std::uint32_t> output, LENGTH_SUMS sums, tetrace::SharedTiles& shared, unsigned tile_height)
 {
@@ -80,7 +81,7 @@ void cross_all(const tetrace::PackedScene& packed, std::span<const tetrace::Quad
                [&](const SceneView& scene, const ::LaunchParams& launch, Pixel pixel) {
                    const uint ray = ray_index(pixel);
                    answers[ray] = std::bit_cast<tetrace::Hit>(
-                       cross_tets(scene, launch.trace, sums, rays[ray], rays[ray_count(launch) + ray]));
+                       cross_tets(scene, launch.trace, sums, absorbs, rays[ray], rays[ray_count(launch) + ray]));
                });
 }
 #endif
@@ -93,14 +94,14 @@ void cross_all(const tetrace::PackedScene& packed, std::span<const tetrace::Quad
 namespace tetrace::openmp {
 
 #ifdef NOTES_CROSSINGS
-void FUNCTION(note_, KERNEL_NAME)(const PackedScene& packed, const Quad& direction, const Quad& origin,
+void FUNCTION(note_, KERNEL_NAME)(const PackedScene& packed, bool absorbs, const Quad& direction, const Quad& origin,
                                   std::uint32_t max_steps, Crossings& noted)
 {
     TraceParams params{};
     params.max_steps = max_steps;
     crossings = &noted;
     noted = {};
-    static_cast<void>(cross_tets(view_of(packed), params, NO_SUMS, direction, origin));
+    static_cast<void>(cross_tets(view_of(packed), params, NO_SUMS, absorbs, direction, origin));
 }
 #else
 void FUNCTION(trace_, KERNEL_NAME)(const PackedScene& packed, std::span<const Quad>, const TraceJob& job,
@@ -145,13 +146,19 @@ void FUNCTION(search_, KERNEL_NAME)(const PackedScene& packed, std::span<const Q
 void FUNCTION(segments_, KERNEL_NAME)(const PackedScene& packed, std::span<const Quad> rays, const TraceJob& job,
                                       std::span<std::uint32_t> output, SharedTiles& shared, unsigned tile_height)
 {
-    cross_all(packed, rays, job, output, NO_SUMS, shared, tile_height);
+    cross_all<false>(packed, rays, job, output, NO_SUMS, shared, tile_height);
 }
 
 void FUNCTION(tally_, KERNEL_NAME)(const PackedScene& packed, std::span<const Quad> rays, const TraceJob& job,
                                    std::span<std::uint32_t> output, SharedTiles& shared, unsigned tile_height)
 {
-    cross_all(packed, rays, job, output, output.data() + HIT_WORDS * job.rays(), shared, tile_height);
+    cross_all<false>(packed, rays, job, output, output.data() + HIT_WORDS * job.rays(), shared, tile_height);
+}
+
+void FUNCTION(absorb_, KERNEL_NAME)(const PackedScene& packed, std::span<const Quad> rays, const TraceJob& job,
+                                    std::span<std::uint32_t> output, SharedTiles& shared, unsigned tile_height)
+{
+    cross_all<true>(packed, rays, job, output, NO_SUMS, shared, tile_height);
 }
 #endif
 #endif

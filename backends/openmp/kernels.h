@@ -35,10 +35,10 @@ struct Crossings {
     std::vector<std::uint32_t> places; ///< of the walk's beginning, and of the face by which each tet is left
 };
 
-/// Walks as task segments does, and notes each tet. direction, origin: the ray's quads. noted: empty for a ray that
-/// crosses no tet. Never timed.
-using NoteFunction = void(const PackedScene& scene, const Quad& direction, const Quad& origin, std::uint32_t max_steps,
-                          Crossings& noted);
+/// Walks as task segments does, or as task absorb does, and notes each tet. direction, origin: the ray's quads. noted:
+/// empty for a ray that crosses no tet. Never timed.
+using NoteFunction = void(const PackedScene& scene, bool absorbs, const Quad& direction, const Quad& origin,
+                          std::uint32_t max_steps, Crossings& noted);
 
 /// That of a kernel with task segments, in math mode exact; null if there is none.
 [[nodiscard]] NoteFunction* find_note_function(KernelId id);

@@ -64,6 +64,7 @@ std::string what_of(const std::string& variant)
             : variant.starts_with("search")   ? "exit searches"
             : variant.starts_with("segments") ? "all tets of given rays"
             : variant.starts_with("tally")    ? "the sums of given rays' lengths per tet"
+            : variant.starts_with("absorb")   ? "the light of given rays in a medium"
                                               : "primary rays";
     if (variant.ends_with("_parts")) text += ", with the tets in several buffers";
     if (variant.ends_with("_texels")) text += ", with the scene read as texels, as on emulated devices";

@@ -1,6 +1,6 @@
 #version 450
 // A kernel as a compute shader (CMakeLists.txt): a thin entry around the shared text. A work group is a tile. TRACE,
-// RAYS, SEARCH, SEGMENTS or TALLY: the task. With TRACE or RAYS, DEFERS_RAYS: rays at ties are deferred to the program
+// RAYS, SEARCH, SEGMENTS, TALLY or ABSORB: the task. With TRACE or RAYS, DEFERS_RAYS: rays at ties are deferred to the program
 // with TRACES_DEFERRED, which traces only those.
 layout(constant_id = 2) const bool selects_minima = false; // true if the driver's own minimum is slower
 #define SELECTS_MINIMA selects_minima
@@ -144,11 +144,16 @@ void main()
     uint count = ray_count(launch);
     output_words[GUARD_WORDS + ray] =
         search_exit(scene, RAY_QUAD(ray), RAY_QUAD(count + ray), RAY_QUAD(2u * count + ray));
-#elif defined(SEGMENTS) || defined(TALLY)
+#elif defined(SEGMENTS) || defined(TALLY) || defined(ABSORB)
     uint ray = ray_index(pixel);
     uint count = ray_count(launch);
     uint sums = GUARD_WORDS + HIT_WORDS * count;
-    Segments all = cross_tets(scene_view(), launch.trace, sums, RAY_QUAD(ray), RAY_QUAD(count + ray));
+#ifdef ABSORB
+    bool absorbs = true;
+#else
+    bool absorbs = false;
+#endif
+    Segments all = cross_tets(scene_view(), launch.trace, sums, absorbs, RAY_QUAD(ray), RAY_QUAD(count + ray));
     uint word = output_word(launch, pixel);
     output_words[word] = all.first;
     output_words[word + 1u] = all.last;

@@ -28,15 +28,15 @@ std::uint64_t number_from(const json& value)
 
 json totals_json(const RayTotals& t)
 {
-    return {t.rays,      t.hits,       t.misses,     t.lost,     t.unwritten,
-            t.hit_steps, t.miss_steps, t.lost_steps, t.reversed, t.length_units};
+    return {t.rays,       t.hits,       t.misses,   t.lost,         t.unwritten, t.hit_steps,
+            t.miss_steps, t.lost_steps, t.reversed, t.length_units, t.absorbed,  t.light_units};
 }
 
 RayTotals totals_from(const json& t)
 {
-    return {number_from(t.at(0)), number_from(t.at(1)), number_from(t.at(2)), number_from(t.at(3)),
-            number_from(t.at(4)), number_from(t.at(5)), number_from(t.at(6)), number_from(t.at(7)),
-            number_from(t.at(8)), number_from(t.at(9))};
+    return {number_from(t.at(0)), number_from(t.at(1)), number_from(t.at(2)),  number_from(t.at(3)),
+            number_from(t.at(4)), number_from(t.at(5)), number_from(t.at(6)),  number_from(t.at(7)),
+            number_from(t.at(8)), number_from(t.at(9)), number_from(t.at(10)), number_from(t.at(11))};
 }
 
 json verdicts_json(const Verdicts& v)

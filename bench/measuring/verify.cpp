@@ -186,7 +186,7 @@ private:
     Verdicts judge_anew(const RowRun& row, std::size_t view)
     {
         const RowKey& key = row.key;
-        if (traits_of(key.kernel.task).crosses) return judge_segments(row, view);
+        if (traits_of(key.kernel.task).crosses) return judge_walks(row, view);
         const HitFormula formula = is_portable(key.kernel) ? HitFormula::kernels : HitFormula::other;
         if (key.kernel.task == Task::rays)
             return given_oracle().judge(scene_->given_rays().set(*scene_, key.rays, key.ray_order, view), hits,
@@ -204,18 +204,19 @@ private:
         const PackedScene& packed = row.packed->data;
         const std::vector<Quad>& quads = scene_->given_rays().rows(*scene_, row.key, &packed, view);
         const std::uint32_t cap = step_cap(scene_->counts().tets, row.device);
-        return [note, cap, &packed, &quads](std::size_t ray) {
+        const bool absorbs = traits_of(row.key.kernel.task).absorbs;
+        return [note, absorbs, cap, &packed, &quads](std::size_t ray) {
             openmp::Crossings noted;
-            note(packed, quads[ray], quads[quads.size() / GIVEN_RAY_QUADS + ray], cap, noted);
+            note(packed, absorbs, quads[ray], quads[quads.size() / GIVEN_RAY_QUADS + ray], cap, noted);
             return CrossedTets{std::move(noted.tets), std::move(noted.places)};
         };
     }
 
-    Verdicts judge_segments(const RowRun& row, std::size_t view)
+    Verdicts judge_walks(const RowRun& row, std::size_t view)
     {
         const RaySet& set = scene_->given_rays().set(*scene_, row.key.rays, row.key.ray_order, view);
-        return judge_crossings(scene_->loaded().scene, set, hits, inverse_of(row.packed->data.packed_of_mesh),
-                               walks_of(row, view), threads_);
+        return judge_crossings(row.key.kernel.task, scene_->loaded().scene, set, hits,
+                               inverse_of(row.packed->data.packed_of_mesh), walks_of(row, view), threads_);
     }
 
     /// The same sums as those of the walks that the answers are judged by, and as those of the answers.
@@ -245,7 +246,7 @@ private:
                          pixel / scene_->width(),
                          hits[ray],
                          reference[ray],
-                         traits_of(row.key.kernel.task).crosses ? Task::segments : row.key.kernel.task};
+                         traits_of(row.key.kernel.task).tallies ? Task::segments : row.key.kernel.task};
     }
 
     /// Users know the triangles of their file, not the pieces that a repair cut these into.

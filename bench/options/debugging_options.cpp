@@ -58,7 +58,7 @@ std::vector<OptionRow> inspect_options()
         {experiments, "--entry", "NAME",
          "Keep the entry points of this kind: 'outside' and 'inside', primary rays that start outside the domain or "
          "in a tet; 'rays', given rays; 'search', exit searches of table5; 'segments', given rays with all their tets; "
-         "'tally', the same with sums per tet. Default: all.",
+         "'tally', the same with sums per tet; 'absorb', the light of a medium. Default: all.",
          bit(Verb::inspect), true, append("--entry", &Options::entries)},
         {"Compilers", "--require-target", "GPU",
          "Fail with exit code 3 unless this target's compiler is here and compiles every program; "

@@ -206,11 +206,11 @@ std::vector<OptionRow> row_options()
         {"Rows", "--task", "NAME",
          "What rows compute: 'trace', the hit of each ray; 'segments', every tet that each ray crosses, and the length "
          "inside it, from where the ray enters the domain, or from its origin, to where it leaves the domain "
-         "(docs/volume.md); 'tally', the same and, for each tet, the sum of the lengths of all rays inside it. Both "
-         "are "
-         "for maria and project, in exact mode, and for rays of kinds primary, diffuse and random, all of which are "
+         "(docs/volume.md); 'tally', the same and, for each tet, the sum of the lengths of all rays inside it; "
+         "'absorb', the light of a medium that glows and absorbs, with a value and a density per tet. These are for "
+         "maria and project, in exact mode, and for rays of kinds primary, diffuse and random, all of which are "
          "given. Default: trace.",
-         measuring, true, append("--task", &Options::tasks, {Task::trace, Task::segments, Task::tally})},
+         measuring, true, append("--task", &Options::tasks, {Task::trace, Task::segments, Task::tally, Task::absorb})},
         {"Rows", "--rays", "KIND",
          "Trace rays of this kind: 'primary', the image's own, made by the kernels. The others are made on the "
          "host, from the primary hits: 'shadow', towards a light, and 'ao', short rays in directions around the "

@@ -76,10 +76,10 @@ inline constexpr auto enum_names<PaperBuild> = names_up_to<PaperBuild::rays>("ou
 
 /// What rays an entry point of a kernel is for: primary ones from outside the domain, primary ones from inside, and
 /// those of each task that is given rays, by its name.
-enum class Entry { outside, inside, rays, search, segments, tally };
+enum class Entry { outside, inside, rays, search, segments, tally, absorb };
 template <>
-inline constexpr auto enum_names<Entry> = names_up_to<Entry::tally>("outside", "inside", "rays", "search", "segments",
-                                                                    "tally");
+inline constexpr auto enum_names<Entry> = names_up_to<Entry::absorb>("outside", "inside", "rays", "search", "segments",
+                                                                     "tally", "absorb");
 
 /// The number of exit searches for Table 5. Default: the paper's.
 struct SearchSize {
@@ -140,7 +140,7 @@ struct Options {
     std::vector<Method> methods;
     std::vector<Layout> layouts;
     std::vector<std::string> backends;
-    std::vector<Task> tasks; ///< trace, which is rays too, segments and tally; empty: trace
+    std::vector<Task> tasks; ///< trace, which is rays too, segments, tally and absorb; empty: trace
     std::vector<RayKind> rays;
     std::vector<RayOrder> ray_orders; ///< of given rays
     std::vector<MathMode> math;

@@ -64,6 +64,13 @@ auto if_steps(std::uint64_t RayTotals::*member)
                 [=](Traced& trace, const ResultValue& value) { read_into(trace.totals.*member, value); });
 }
 
+/// Of task absorb: without a light none is absorbed.
+auto of_absorbed(std::uint64_t RayTotals::*member)
+{
+    return both([=](const Traced& trace) { return trace.totals.light_units > 0 ? json(trace.totals.*member) : json(); },
+                [=](Traced& trace, const ResultValue& value) { read_into(trace.totals.*member, value); });
+}
+
 /// Of tasks segments and tally: without a length nothing is reversed.
 auto of_segments(std::uint64_t RayTotals::*member)
 {
@@ -257,7 +264,8 @@ std::vector<RowField> identity_fields()
                  read_into(row.key.kernel.task, value);
                  if (!traits_of(row.key.kernel.task).crosses) value.reject("is not a task that rows name");
              }),
-         recorded(R"({ "enum": ["segments", "tally"] })", optional, "left out of rows that trace"), csv("task")},
+         recorded(R"({ "enum": ["segments", "tally", "absorb"] })", optional, "left out of rows that trace"),
+         csv("task")},
         {"", "rays", &RowKey::rays,
          recorded(R"({ "enum": ["primary", "shadow", "ao", "diffuse", "random"] })", required, "their kind"),
          csv("rays")},
@@ -478,6 +486,11 @@ std::vector<RowField> answer_fields()
          recorded("count", optional,
                   "of tasks segments and tally: the rays' length inside the tets, in units of 2^-28"),
          csv("length units")},
+        {"counts", "absorbed", of_absorbed(&RayTotals::absorbed),
+         recorded("count", optional, "of task absorb: rays that end where too little light passes"), csv("absorbed")},
+        {"counts", "light_units", of_absorbed(&RayTotals::light_units),
+         recorded("count", optional, "of task absorb: the light that reaches the rays' beginnings, in units of 2^-32"),
+         csv("light units")},
         {"counts", "misses", in(&Traced::totals, &RayTotals::misses), recorded("count", required)},
         {"counts", "lost", in(&Traced::totals, &RayTotals::lost), recorded("count", required)},
         {"counts", "hit_steps", if_steps(&RayTotals::hit_steps), recorded("count", optional, "of the rays that hit")},

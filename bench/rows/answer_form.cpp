@@ -3,6 +3,7 @@
 #include "bench/rows/json_numbers.h"
 #include "bench/terminal/text.h"
 #include "core/base/error.h"
+#include "core/rays/absorbed.h"
 #include "core/rays/segments.h"
 
 #include <fmt/format.h>
@@ -51,8 +52,8 @@ json json_of_segments(const Hit& answer)
 
 Hit segments_of_json(const json& object)
 {
-    return as_hit({word_at(object, "first"), word_at(object, "last"), word_at(object, "length"),
-                   word_at(object, "hash"), word_at(object, "reversed"), word_at(object, "crossings")});
+    return as_hit(Segments{word_at(object, "first"), word_at(object, "last"), word_at(object, "length"),
+                           word_at(object, "hash"), word_at(object, "reversed"), word_at(object, "crossings")});
 }
 
 std::string text_of_segments(const Hit& answer)
@@ -75,6 +76,39 @@ std::string mean_of_segments(std::string_view rays, const RayTotals& totals)
                        with_commas(totals.hit_steps));
 }
 
+json json_of_absorbed(const Hit& answer)
+{
+    const Absorbed all = absorbed_of(answer);
+    return {{"first", all.first}, {"last", all.last},      {"light", all.light},
+            {"hash", all.hash},   {"tets", all.crossings}, {"transmittance", all.transmittance}};
+}
+
+Hit absorbed_of_json(const json& object)
+{
+    return as_hit(Absorbed{word_at(object, "first"), word_at(object, "last"), word_at(object, "light"),
+                           word_at(object, "hash"), word_at(object, "transmittance"), word_at(object, "tets")});
+}
+
+std::string text_of_absorbed(const Hit& answer)
+{
+    const Absorbed all = absorbed_of(answer);
+    if (all.first == NO_HIT) return "no tet";
+    return fmt::format("{} tets, {} to tet {}, hash {:08x}, light {:.9g}, {:.9g} passes", all.crossings,
+                       all.first == LOST ? "lost" : fmt::format("tet {}", all.first), all.last, all.hash,
+                       share_of_light(all.light), share_passed(all.transmittance));
+}
+
+std::string mean_of_absorbed(std::string_view rays, const RayTotals& totals)
+{
+    if (totals.hits == 0) return {};
+    const auto crossing = static_cast<double>(totals.hits);
+    return fmt::format("{} rays that cross the domain: {:.2f} tets and a light of {:.4f} per ray; {} of {} absorbed "
+                       "before they leave it\n",
+                       rays, static_cast<double>(totals.hit_steps) / crossing,
+                       share_of_light(totals.light_units) / crossing, with_commas(totals.absorbed),
+                       with_commas(totals.hits));
+}
+
 } // namespace
 
 const AnswerForm& answers_of(Task task)
@@ -82,11 +116,14 @@ const AnswerForm& answers_of(Task task)
     static const AnswerForm hits{count_rays, json_of_hit, hit_of_json, "face_id", text_of_hit, no_mean};
     static const AnswerForm segments{count_segments, json_of_segments, segments_of_json,
                                      "crossings",    text_of_segments, mean_of_segments};
+    static const AnswerForm absorbed{count_absorbed, json_of_absorbed, absorbed_of_json,
+                                     "light",        text_of_absorbed, mean_of_absorbed};
     switch (task) {
     case Task::trace:
     case Task::rays: return hits;
     case Task::segments:
     case Task::tally: return segments; // its sums have no form: they are judged as they are
+    case Task::absorb: return absorbed;
     case Task::search: break;
     }
     throw Error(ErrorKind::internal, "answers_of: exit searches find faces");

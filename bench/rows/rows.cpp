@@ -251,9 +251,9 @@ void require_named_devices(const Options& options, const std::vector<Backend*>& 
     }
 }
 
-constexpr const char* crossing_rule =
-    "; rows of --task segments are of maria and project on tets that name their corners, with schedule tiles, math "
-    "mode exact, and rays of kinds primary, diffuse and random";
+constexpr const char* crossing_rule = "; rows of --task segments, tally and absorb are of maria and project on tets "
+                                      "that name their corners, with schedule tiles, math "
+                                      "mode exact, and rays of kinds primary, diffuse and random";
 
 /// The reasons of the backends asked for, to explain an empty selection.
 std::string reasons(const Options& options)

@@ -1,5 +1,6 @@
 #include "bench/truth/crossings.h"
 
+#include "bench/truth/absorption.h"
 #include "bench/truth/judge.h"
 #include "bench/truth/tube.h"
 #include "core/base/exact.h"
@@ -117,9 +118,10 @@ struct Ways {
 /// One ray among the tets.
 class CrossedRay {
 public:
-    CrossedRay(const Scene& scene, const GivenRay& ray, std::span<const std::uint32_t> mesh_of_packed)
-        : scene_(scene), ray_(ray), mesh_of_packed_(mesh_of_packed), frame_({ray.origin, ray.direction}),
-          bound_(tie_bound(ray.origin) * looser), from_outside_(ray.half_face == NO_HALF_FACE)
+    CrossedRay(Task task, const Scene& scene, const GivenRay& ray, std::span<const std::uint32_t> mesh_of_packed)
+        : absorbs_(traits_of(task).absorbs), scene_(scene), ray_(ray), mesh_of_packed_(mesh_of_packed),
+          frame_({ray.origin, ray.direction}), bound_(tie_bound(ray.origin) * looser),
+          from_outside_(ray.half_face == NO_HALF_FACE)
     {
         const Double3 direction = to_double(ray.direction);
         const std::array<double, 3> along = {direction.x, direction.y, direction.z};
@@ -131,7 +133,7 @@ public:
     }
 
     /// Why the answer is wrong; null: it is not.
-    [[nodiscard]] const char* flaw_of(const Segments& answer, const CrossedTets& walk);
+    [[nodiscard]] const char* flaw_of(const Hit& answer, const CrossedTets& walk);
     /// Whether the exact ray crosses the walk's tets and no others, and how far the ray is from the walk's faces.
     [[nodiscard]] bool is_exact() const { return is_exact_; }
     [[nodiscard]] double distance() const { return distance_; }
@@ -151,11 +153,14 @@ private:
     [[nodiscard]] const char* flaw_of_face(std::uint32_t number, std::size_t side, std::uint32_t place);
     [[nodiscard]] const char* flaw_of_step(std::uint32_t number, std::uint32_t next, std::uint32_t place);
     [[nodiscard]] Ways boundary_of(std::uint32_t number, std::uint32_t place, double sense);
+    [[nodiscard]] const char* flaw_of_last(std::uint32_t place);
     [[nodiscard]] const char* flaw_of_ends(const CrossedTets& walk);
     [[nodiscard]] const char* flaw_of_chain(const CrossedTets& walk);
     [[nodiscard]] const char* flaw_of_gaps();
     [[nodiscard]] bool leaves_out(Stretch gap) const;
 
+    bool absorbs_;
+    bool is_absorbed_ = false; ///< the walk may end inside the domain
     const Scene& scene_;
     const GivenRay& ray_;
     std::span<const std::uint32_t> mesh_of_packed_;
@@ -165,6 +170,7 @@ private:
     double place_of_origin_ = 0;
     std::vector<std::uint32_t> chain_; ///< the scene's numbers
     double distance_ = 0;
+    double end_ = std::numeric_limits<double>::infinity(); ///< of the exact ray that is looked at
     bool is_exact_ = true;
 };
 
@@ -242,10 +248,30 @@ Ways CrossedRay::boundary_of(std::uint32_t number, std::uint32_t place, double s
     return ways;
 }
 
+/// Of a walk that is absorbed inside the domain: its last place must be on some face of its last tet. The exact ray
+/// matters to where it may leave by such a face.
+const char* CrossedRay::flaw_of_last(std::uint32_t place)
+{
+    const char* flaw = nullptr;
+    for (std::size_t side = 0; side < 4; ++side) {
+        if (const char* const own = flaw_of_face(chain_.back(), side, place)) {
+            flaw = own;
+            continue;
+        }
+        const Corners corners = face(chain_.back(), side);
+        if (const auto depths = depths_within(corners, 2 * (bound_ + distance_across(corners))))
+            end_ = std::min(end_, depths->begin);
+    }
+    return std::isinf(end_) ? flaw : nullptr;
+}
+
 const char* CrossedRay::flaw_of_ends(const CrossedTets& walk)
 {
+    if (is_absorbed_) {
+        if (const char* const flaw = flaw_of_last(walk.places.back())) return flaw;
+    }
     const Ways last = boundary_of(chain_.back(), walk.places.back(), -1);
-    if (last.sides == 0) return last.flaw;
+    if (last.sides == 0 && !is_absorbed_) return last.flaw;
     if (!from_outside_)
         return std::abs(depth_of(walk.places.front())) <= 0x1p-26 ? nullptr : "it does not begin at the ray's origin";
     const Ways first = boundary_of(chain_.front(), walk.places.front(), 1);
@@ -310,6 +336,7 @@ const char* CrossedRay::flaw_of_gaps()
 {
     const auto domain = planes_of_domain();
     Stretch rest = inside_of(domain, 0);
+    rest.end = std::min(rest.end, end_);
     std::vector<Stretch> parts;
     for (const std::uint32_t number : chain_) {
         const Stretch part = inside_of(planes_of(number), 0);
@@ -330,9 +357,16 @@ const char* CrossedRay::flaw_of_gaps()
     return nullptr;
 }
 
-const char* CrossedRay::flaw_of(const Segments& answer, const CrossedTets& walk)
+const char* CrossedRay::flaw_of(const Hit& answer, const CrossedTets& walk)
 {
-    if (answer != summary_of(walk)) return "its tets, hash or length are not those of its walk";
+    if (absorbs_) {
+        const Absorbed absorbed = absorbed_of(answer);
+        if (absorbed != absorption_of(walk)) return "its tets, hash, light or transmittance are not those of its walk";
+        if (absorbed.crossings != walk.tets.size()) return "its walk goes on where too little light passes";
+        is_absorbed_ = absorbed.transmittance < MIN_TRANSMITTANCE;
+    } else if (segments_of(answer) != summary_of(walk)) {
+        return "its tets, hash or length are not those of its walk";
+    }
     if (!walk.tets.empty()) {
         if (const char* const flaw = flaw_of_chain(walk)) return flaw;
         return flaw_of_gaps();
@@ -365,24 +399,25 @@ Segments summary_of(const CrossedTets& walk)
     return sum;
 }
 
-Verdicts judge_crossings(const Scene& scene, const RaySet& set, std::span<const Hit> answers,
+Verdicts judge_crossings(Task task, const Scene& scene, const RaySet& set, std::span<const Hit> answers,
                          std::span<const std::uint32_t> mesh_of_packed,
                          const std::function<CrossedTets(std::size_t)>& walk_of, unsigned threads)
 {
     const int team = threads != 0 ? static_cast<int>(threads) : omp_get_max_threads();
+    const bool absorbs = traits_of(task).absorbs;
     return judge_each(team, answers.size(), [&](Verdicts& verdicts, std::size_t i) {
         const GivenRay& ray = set.rays[i];
-        const Segments answer = segments_of(answers[i]);
-        CrossedRay crossed(scene, ray, mesh_of_packed);
+        const bool is_lost = answers[i].face_id == LOST;
+        CrossedRay crossed(task, scene, ray, mesh_of_packed);
         const char* const flaw =
-            answer.first == LOST ? "the walk reached its cap of steps" : crossed.flaw_of(answer, walk_of(i));
+            is_lost ? "the walk reached its cap of steps" : crossed.flaw_of(answers[i], walk_of(i));
         if (flaw == nullptr) {
             ++(crossed.is_exact() ? verdicts.agreed : verdicts.ties);
             if (!crossed.is_exact())
                 verdicts.max_tie_distance = std::max(verdicts.max_tie_distance, crossed.distance());
             return;
         }
-        ++(answer.first == LOST ? verdicts.lost : verdicts.wrong);
+        ++(is_lost ? verdicts.lost : verdicts.wrong);
         verdicts.flawed.push_back(ray.pixel);
         if (verdicts.first_wrong) return;
         verdicts.first_wrong = WrongRay{.view = set.view,
@@ -390,7 +425,7 @@ Verdicts judge_crossings(const Scene& scene, const RaySet& set, std::span<const 
                                         .y = ray.pixel / set.width,
                                         .ours = answers[i],
                                         .reason = flaw,
-                                        .task = Task::segments};
+                                        .task = absorbs ? Task::absorb : Task::segments};
     });
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/exact.h"
+#include "core/rays/absorbed.h"
 #include "core/rays/segments.h"
 
 #include <algorithm>
@@ -31,9 +32,10 @@ std::uint64_t max_ulps(const Hit& a, const Hit& b)
 
 void RayTotals::add(const RayTotals& other)
 {
-    for (const auto count : {&RayTotals::rays, &RayTotals::hits, &RayTotals::misses, &RayTotals::lost,
-                             &RayTotals::unwritten, &RayTotals::hit_steps, &RayTotals::miss_steps,
-                             &RayTotals::lost_steps, &RayTotals::reversed, &RayTotals::length_units})
+    for (const auto count :
+         {&RayTotals::rays, &RayTotals::hits, &RayTotals::misses, &RayTotals::lost, &RayTotals::unwritten,
+          &RayTotals::hit_steps, &RayTotals::miss_steps, &RayTotals::lost_steps, &RayTotals::reversed,
+          &RayTotals::length_units, &RayTotals::absorbed, &RayTotals::light_units})
         this->*count += other.*count;
 }
 
@@ -62,6 +64,18 @@ RayTotals count_segments(std::span<const Hit> answers)
         if (segments.first == POISON) continue;
         totals.reversed += segments.reversed;
         totals.length_units += segments.length;
+    }
+    return totals;
+}
+
+RayTotals count_absorbed(std::span<const Hit> answers)
+{
+    RayTotals totals = count_rays(answers);
+    for (const Hit& answer : answers) {
+        const Absorbed absorbed = absorbed_of(answer);
+        if (absorbed.first == POISON) continue;
+        totals.absorbed += absorbed.transmittance < MIN_TRANSMITTANCE ? 1 : 0;
+        totals.light_units += absorbed.light;
     }
     return totals;
 }

@@ -20,6 +20,8 @@ struct RayTotals {
     std::uint64_t lost_steps = 0;
     std::uint64_t reversed = 0; ///< of task segments: Segments::reversed, and the same of length
     std::uint64_t length_units = 0;
+    std::uint64_t absorbed = 0; ///< of task absorb: rays that end inside the domain, and the sum of Absorbed::light
+    std::uint64_t light_units = 0;
 
     [[nodiscard]] std::uint64_t steps() const { return hit_steps + miss_steps + lost_steps; }
     void add(const RayTotals& other);
@@ -27,6 +29,8 @@ struct RayTotals {
 [[nodiscard]] RayTotals count_rays(std::span<const Hit> hits);
 /// The same for answers of task segments: a hit is a ray that crosses the domain, a step a tet that it leaves.
 [[nodiscard]] RayTotals count_segments(std::span<const Hit> answers);
+/// The same of task absorb.
+[[nodiscard]] RayTotals count_absorbed(std::span<const Hit> answers);
 
 /// How far two answers may differ and still count as equal.
 struct Allowance {

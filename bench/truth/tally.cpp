@@ -21,7 +21,7 @@ namespace {
 /// What a ray has of a tet, whose vertices are as the ray sees them. A place is that of a point within four bounds of
 /// the ray (docs/spec/volume.md, S7, rule 4), so it is off by at most that over the sine of the face's angle to the
 /// ray, and by rounding. A chord has two places, and is no longer than the tet.
-ExactLength exact_length(const std::array<Double3, 4>& vertices, double bound)
+ExactChord exact_chord(std::uint32_t tet, const std::array<Double3, 4>& vertices, double bound)
 {
     double begin = 0, end = std::numeric_limits<double>::infinity(), off = 0, extent = 0;
     for (std::size_t side = 0; side < 4; ++side) {
@@ -35,7 +35,9 @@ ExactLength exact_length(const std::array<Double3, 4>& vertices, double bound)
         off = std::max(off, normal.z == 0 ? std::numeric_limits<double>::infinity() : 4 * bound / std::abs(normal.z));
         extent = std::max({extent, length(a - b), length(b - c), length(c - a)});
     }
-    return {std::max(0.0, end - begin), std::min(2 * (off + 2 * bound + 12 * 0x1p-24 * extent), extent) + 0x1p-26};
+    return {tet,
+            begin,
+            {std::max(0.0, end - begin), std::min(2 * (off + 2 * bound + 12 * 0x1p-24 * extent), extent) + 0x1p-26}};
 }
 
 /// Whether the ray, from its origin on, comes within the distance of the tet's bounding box.
@@ -90,22 +92,28 @@ void require_sums(std::span<const std::uint64_t> tally, std::span<const std::uin
                             wrong, tally.size(), first, tally[first], expected[first]));
 }
 
+std::vector<ExactChord> exact_chords(const Scene& scene, const GivenRay& ray)
+{
+    std::vector<ExactChord> chords;
+    const tube::Frame frame({ray.origin, ray.direction});
+    const double bound = tie_bound(ray.origin);
+    for (std::uint32_t tet = 0; tet < scene.tets.tets.size(); ++tet) {
+        std::array<Double3, 4> vertices{};
+        for (std::size_t i = 0; i < 4; ++i)
+            vertices.at(i) = frame.local(scene.tets.vertices[scene.tets.tets[tet].vertices[i]]);
+        if (is_near(vertices, 2 * bound)) chords.push_back(exact_chord(tet, vertices, bound));
+    }
+    return chords;
+}
+
 std::vector<ExactLength> exact_tally(const Scene& scene, const RaySet& set)
 {
     std::vector<ExactLength> sums(scene.tets.tets.size());
-    for (const GivenRay& ray : set.rays) {
-        const tube::Frame frame({ray.origin, ray.direction});
-        const double bound = tie_bound(ray.origin);
-        for (std::size_t tet = 0; tet < sums.size(); ++tet) {
-            std::array<Double3, 4> vertices{};
-            for (std::size_t i = 0; i < 4; ++i)
-                vertices.at(i) = frame.local(scene.tets.vertices[scene.tets.tets[tet].vertices[i]]);
-            if (!is_near(vertices, 2 * bound)) continue;
-            const ExactLength share = exact_length(vertices, bound);
-            sums[tet].length += share.length;
-            sums[tet].bound += share.bound;
+    for (const GivenRay& ray : set.rays)
+        for (const ExactChord& chord : exact_chords(scene, ray)) {
+            sums[chord.tet].length += chord.share.length;
+            sums[chord.tet].bound += chord.share.bound;
         }
-    }
     return sums;
 }
 

@@ -29,8 +29,16 @@ struct ExactLength {
     double bound = 0;
 };
 
-/// The part of each exact ray, from its origin on, that is between the four planes of a tet, in double precision: rays
-/// times tets, so for small scenes. Result: by tet, in the scene's order. Shares nothing with the kernels.
+/// What an exact ray, from its origin on, has of a tet between its four planes, in double precision.
+struct ExactChord {
+    std::uint32_t tet; ///< in the scene's order
+    double begin;      ///< distance from the origin
+    ExactLength share;
+};
+/// Of all tets near a ray: looks at each tet, so for small scenes. Shares nothing with the kernels.
+[[nodiscard]] std::vector<ExactChord> exact_chords(const Scene& scene, const GivenRay& ray);
+
+/// The exact chords of all rays added up. Result: by tet, in the scene's order.
 [[nodiscard]] std::vector<ExactLength> exact_tally(const Scene& scene, const RaySet& set);
 
 } // namespace tetrace

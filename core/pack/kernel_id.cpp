@@ -27,7 +27,7 @@ const std::vector<KernelRow>& kernel_rows()
 {
     // The list's words are these constants.
     constexpr unsigned trace = bit(Task::trace), rays = bit(Task::rays), search = bit(Task::search),
-                       segments = bit(Task::segments), tally = bit(Task::tally);
+                       segments = bit(Task::segments), tally = bit(Task::tally), absorb = bit(Task::absorb);
     constexpr unsigned tiles = bit(Schedule::tiles), persistent = bit(Schedule::persistent),
                        packets = bit(Schedule::packets), native = bit(Schedule::native),
                        pipeline = bit(Schedule::pipeline);
@@ -173,32 +173,18 @@ std::string name_of(const KernelId& kernel)
 
 const TaskTraits& traits_of(Task task)
 {
+    static constexpr TaskTraits trace{.finds_hits = true, .words = HIT_WORDS},
+        rays{.takes_rays = true, .finds_hits = true, .words = HIT_WORDS}, search{.takes_rays = true, .words = 1},
+        segments{.takes_rays = true, .crosses = true, .words = HIT_WORDS},
+        tally{.takes_rays = true, .crosses = true, .tallies = true, .words = HIT_WORDS},
+        absorb{.takes_rays = true, .crosses = true, .absorbs = true, .words = HIT_WORDS};
     switch (task) {
-    case Task::trace: {
-        static constexpr TaskTraits trace{
-            .takes_rays = false, .finds_hits = true, .crosses = false, .tallies = false, .words = HIT_WORDS};
-        return trace;
-    }
-    case Task::rays: {
-        static constexpr TaskTraits rays{
-            .takes_rays = true, .finds_hits = true, .crosses = false, .tallies = false, .words = HIT_WORDS};
-        return rays;
-    }
-    case Task::search: {
-        static constexpr TaskTraits search{
-            .takes_rays = true, .finds_hits = false, .crosses = false, .tallies = false, .words = 1};
-        return search;
-    }
-    case Task::segments: {
-        static constexpr TaskTraits segments{
-            .takes_rays = true, .finds_hits = false, .crosses = true, .tallies = false, .words = HIT_WORDS};
-        return segments;
-    }
-    case Task::tally: {
-        static constexpr TaskTraits tally{
-            .takes_rays = true, .finds_hits = false, .crosses = true, .tallies = true, .words = HIT_WORDS};
-        return tally;
-    }
+    case Task::trace: return trace;
+    case Task::rays: return rays;
+    case Task::search: return search;
+    case Task::segments: return segments;
+    case Task::tally: return tally;
+    case Task::absorb: return absorb;
     }
     throw Error(ErrorKind::internal, "traits_of: no such task");
 }

@@ -56,19 +56,21 @@ inline constexpr auto enum_names<Schedule> = names_up_to<Schedule::pipeline>("ti
 }
 /// What a kernel does: it traces the primary rays of an image, traces given rays, searches the exit face of a single
 /// tet for each given ray, or crosses every tet on given rays (core/rays/segments.h), for task tally with the sum of
-/// the lengths in each tet.
-enum class Task { trace, rays, search, segments, tally };
+/// the lengths in each tet, for task absorb with the light of a medium there (core/rays/absorbed.h).
+enum class Task { trace, rays, search, segments, tally, absorb };
 template <>
-inline constexpr auto enum_names<Task> = names_up_to<Task::tally>("trace", "rays", "search", "segments", "tally");
+inline constexpr auto enum_names<Task> = names_up_to<Task::absorb>("trace", "rays", "search", "segments", "tally",
+                                                                   "absorb");
 /// What those who know nothing else of a task ask of it.
 struct TaskTraits {
-    bool takes_rays; ///< given to a session; else they are an image's
-    bool finds_hits; ///< its answers are hits (core/rays/hit.h), in any schedule and math mode that the kernel has;
-                     ///< other tasks have only schedule tiles
-    bool crosses;    ///< it goes through occlusive faces, to where a ray leaves the domain: no ray has an end, and math
-                     ///< mode is exact
-    bool tallies;    ///< it has a sum of lengths per tet, too, after the answers of the rays
-    std::size_t words; ///< of a ray's answer
+    bool takes_rays = false; ///< given to a session; else they are an image's
+    bool finds_hits = false; ///< its answers are hits (core/rays/hit.h), in any schedule and math mode that the kernel
+                             ///< has; other tasks have only schedule tiles
+    bool crosses = false; ///< it goes through occlusive faces, to where a ray leaves the domain: no ray has an end, and
+                          ///< math mode is exact
+    bool absorbs = false; ///< it crosses a medium, and ends where too little light passes
+    bool tallies = false; ///< it has a sum of lengths per tet, too, after the answers of the rays
+    std::size_t words = 0; ///< of a ray's answer
 };
 [[nodiscard]] const TaskTraits& traits_of(Task task);
 

@@ -29,6 +29,11 @@
 #define PLACE_BITS 29u
 #define LENGTH_BITS 28u
 #define PLACE_OF_ZERO 0x40000000u // 2 * 2^PLACE_BITS
+// Task absorb: what a medium lets pass is in units of 2^-TRANSMITTANCE_BITS; a ray that has met none has NO_ABSORPTION.
+// A walk ends after the tet in which it falls below MIN_TRANSMITTANCE, 2^-10 of the light.
+#define TRANSMITTANCE_BITS 24u
+#define NO_ABSORPTION 0x1000000u
+#define MIN_TRANSMITTANCE 0x4000u
 // After this many steps a walk checks whether it is in a circle. Longer walks are rare, and those in circles end soon.
 #define STEPS_BEFORE_DOUBT 4096u
 // A tile of an image is a work group: this many pixels wide, 4 or 8 high.

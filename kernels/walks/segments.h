@@ -1,13 +1,14 @@
 // Task segments: every tet that a given ray crosses, from where it enters the domain, or from its origin, to where it
 // leaves the domain (docs/spec/volume.md). Task tally: the same, and for each tet the sum of the lengths of all rays
-// inside it. The walk passes through occlusive faces. It is a method's own: tets, and so their hash, are the same on
-// all layouts.
+// inside it. Task absorb: the light of a medium in these tets, until it lets no more pass. The walk passes through
+// occlusive faces. It is a method's own: tets, and so their hash, are the same on all layouts.
 #ifndef TETRACE_KERNELS_WALKS_SEGMENTS_H
 #define TETRACE_KERNELS_WALKS_SEGMENTS_H
 
 #include KERNEL_METHOD_HEADER
 #include KERNEL_LAYOUT_HEADER
 #include "kernels/layouts/faces.h"
+#include "kernels/walks/absorption.h"
 #include "kernels/walks/places.h"
 
 #define CROSSES_TETS
@@ -39,7 +40,8 @@ KERNEL_FN void add_length(LENGTH_SUMS sums, uint tet, uint length, bool is_undon
 #define ADD_LENGTH(sums, tet, length, is_undone) add_length(sums, tet, length, is_undone)
 #endif
 
-// A ray's answer, in the order of its words in the output.
+// A ray's answer, in the order of its words in the output. Of task absorb, `total` is the light and `reversed` the
+// transmittance.
 STRUCT(Segments)
 {
     uint first;     // tet; or NO_HIT, if the ray crosses none; or LOST
@@ -50,14 +52,14 @@ STRUCT(Segments)
     uint crossings; // tets left
 };
 
-KERNEL_FN Segments no_segments()
+KERNEL_FN Segments no_segments(bool absorbs)
 {
     Segments none;
     none.first = NO_HIT;
     none.last = NO_TET;
     none.total = 0u;
     none.hash = 0u;
-    none.reversed = 0u;
+    none.reversed = absorbs ? NO_ABSORPTION : 0u;
     none.crossings = 0u;
     return none;
 }
@@ -70,6 +72,7 @@ STRUCT(Crossing)
     uint begin;    // place of its beginning
     uint farthest; // of the places so far
     Segments sum;  // so far; `total` is computed at the end
+    Absorption absorption;
 };
 
 KERNEL_FN Crossing begin_crossing(uint tet, uint face, uint place)
@@ -80,8 +83,9 @@ KERNEL_FN Crossing begin_crossing(uint tet, uint face, uint place)
     at.face = face;
     at.begin = place;
     at.farthest = place;
-    at.sum = no_segments();
+    at.sum = no_segments(false);
     at.sum.first = tet;
+    at.absorption = no_absorption();
     return at;
 }
 
@@ -101,7 +105,7 @@ KERNEL_FN uint place_of_half_face(SceneView scene, Ray ray, uint half_face, uint
 }
 
 // The walk after it has left its tet; tet and face are still those. is_undone: its length is taken back.
-KERNEL_FN Crossing leaving_tet(SceneView scene, Ray ray, uint stretch, MAYBE_UNUSED LENGTH_SUMS sums,
+KERNEL_FN Crossing leaving_tet(SceneView scene, Ray ray, uint stretch, MAYBE_UNUSED LENGTH_SUMS sums, bool absorbs,
                                MAYBE_UNUSED bool is_undone, Crossing at)
 {
     uint place = place_of_half_face(scene, ray, (at.tet << 2u) | at.face, stretch);
@@ -109,11 +113,18 @@ KERNEL_FN Crossing leaving_tet(SceneView scene, Ray ray, uint stretch, MAYBE_UNU
     Crossing next = at;
     next.farthest = place > at.farthest ? place : at.farthest;
     ADD_LENGTH(sums, at.tet, next.farthest - at.farthest, is_undone);
+    if (absorbs) next.absorption = absorbed_in(at.tet, next.farthest - at.farthest, at.absorption);
     next.sum.last = at.tet;
     next.sum.hash = hash_with(hash_with(at.sum.hash, at.tet), place);
     next.sum.reversed = at.sum.reversed + (place < at.farthest ? 1u : 0u);
     next.sum.crossings = at.sum.crossings + 1u;
     return next;
+}
+
+// Whether the medium lets too little pass for the walk to go on.
+KERNEL_FN bool is_absorbed(bool absorbs, Crossing at)
+{
+    return absorbs && at.absorption.transmittance < MIN_TRANSMITTANCE;
 }
 
 // The walk in the tet of the half-face by which it enters.
@@ -131,7 +142,7 @@ KERNEL_FN void take_back(SceneView scene, Ray ray, uint stretch, LENGTH_SUMS sum
 {
     Crossing at = begin;
     for (;;) {
-        at = leaving_tet(scene, ray, stretch, sums, true, at);
+        at = leaving_tet(scene, ray, stretch, sums, false, true, at);
         uint half_face = opposite_half_face(scene, at.tet, at.face);
         if (half_face == NO_HALF_FACE || at.sum.crossings >= count) break;
         at = entering_tet(scene, ray, half_face, at);
@@ -163,16 +174,18 @@ KERNEL_FN Exit exit_from_face(SceneView scene, Ray ray, uint half_face)
 }
 #endif
 
-// sums: to which each tet's length is added, or NO_SUMS. direction, origin: the ray's quads. Walks from inside begin
-// anew as those to a hit do (docs/spec/project.md, P6 and P8). Other walks than those along paths cannot begin anew:
-// they are lost where they are found in a circle (walk_by_neighbours.h).
-KERNEL_FN Segments cross_tets(SceneView scene, TraceParams params, LENGTH_SUMS sums, uint4 direction, uint4 origin)
+// sums: to which each tet's length is added, or NO_SUMS. absorbs: for task absorb; without sums. direction, origin: the
+// ray's quads. Walks from inside begin anew as those to a hit do (docs/spec/project.md, P6 and P8), but not if they are
+// absorbed before that is tested. Other walks than those along paths cannot begin anew: they are lost where they are
+// found in a circle (walk_by_neighbours.h).
+KERNEL_FN Segments cross_tets(SceneView scene, TraceParams params, LENGTH_SUMS sums, bool absorbs, uint4 direction,
+                              uint4 origin)
 {
     Ray ray = given_ray(direction, origin);
     uint stretch = origin.w;
     bool from_outside = direction.w == NO_HALF_FACE;
     uint entry = from_outside ? entered_half_face(scene, ray) : direction.w;
-    if (entry == NO_HALF_FACE) return no_segments();
+    if (entry == NO_HALF_FACE) return no_segments(absorbs);
     Exit exit;
     exit.tet = entry >> 2u;
     exit.face = 0u;
@@ -184,7 +197,7 @@ KERNEL_FN Segments cross_tets(SceneView scene, TraceParams params, LENGTH_SUMS s
         exit = exit_from_face(scene, ray, entry);
         begin = place_of_point(ray, ray.origin, stretch);
     }
-    if (exit.tet == NO_TET) return no_segments();
+    if (exit.tet == NO_TET) return no_segments(absorbs);
 
 #ifdef WALKS_PATHS
     bool may_begin_anew = !from_outside;
@@ -199,12 +212,13 @@ KERNEL_FN Segments cross_tets(SceneView scene, TraceParams params, LENGTH_SUMS s
     for (;;) {
         if (at.face != NO_EXIT) {
             for (;;) {
-                at = leaving_tet(scene, ray, stretch, sums, false, at);
+                at = leaving_tet(scene, ray, stretch, sums, absorbs, false, at);
                 half_face = opposite_half_face(scene, at.tet, at.face);
-                if (half_face == NO_HALF_FACE || at.sum.crossings >= pause) break;
+                if (half_face == NO_HALF_FACE || at.sum.crossings >= pause || is_absorbed(absorbs, at)) break;
                 at = entering_tet(scene, ray, half_face, at);
             }
         }
+        if (is_absorbed(absorbs, at)) half_face = NO_HALF_FACE;
 #ifdef WALKS_PATHS
         bool is_paused = half_face != NO_HALF_FACE;
         if (!may_begin_anew || (own != NO_HALF_FACE && !is_paused)) break;
@@ -229,8 +243,9 @@ KERNEL_FN Segments cross_tets(SceneView scene, TraceParams params, LENGTH_SUMS s
         at = entering_tet(scene, ray, half_face, at);
 #endif
     }
-    if (at.sum.crossings == 0u) return no_segments();
-    at.sum.total = at.farthest - at.begin;
+    if (at.sum.crossings == 0u) return no_segments(absorbs);
+    at.sum.total = absorbs ? at.absorption.light : at.farthest - at.begin;
+    at.sum.reversed = absorbs ? at.absorption.transmittance : at.sum.reversed;
     if (half_face != NO_HALF_FACE) at.sum.first = LOST;
     return at.sum;
 }

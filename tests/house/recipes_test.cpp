@@ -42,7 +42,7 @@ std::vector<Recipe> read_recipes()
 const std::map<std::string, std::vector<std::string>> examples = {
     {"A method", {"maria", "plane", "plucker", "stp", "ms06", "project"}},
     {"A layout of tets", {"half32", "tet64", "tet20", "tet16"}},
-    {"A task", {"segments", "tally"}},
+    {"A task", {"segments", "tally", "absorb"}},
     {"A backend", {"openmp", "opencl", "vulkan", "cuda", "embree"}},
     {"A stressor", {"pairs_under_pressure", "zoo_of_exits", "lost_in_products"}},
     {"A column", {"spread", "mrays_per_s"}},

@@ -294,7 +294,7 @@ TEST(ProjectCycles, leave_nothing_in_the_sums_of_a_tally)
         set.rays.size(), tets.packed().tet_count,
         [&](std::size_t ray) {
             openmp::Crossings noted;
-            note(tets.packed(), quads[ray], quads[set.rays.size() + ray], many_steps, noted);
+            note(tets.packed(), false, quads[ray], quads[set.rays.size() + ray], many_steps, noted);
             return CrossedTets{std::move(noted.tets), std::move(noted.places)};
         },
         2);

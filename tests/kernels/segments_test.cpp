@@ -1,6 +1,7 @@
 // Task segments on rays that are built to break a walk, and the places of S2.
 #include "scenes/load.h"
 #include "tests/support/crossed_tets.h"
+#include "tests/support/domain_chord.h"
 #include "tests/support/hard_rays.h"
 #include "tests/support/hard_scenes.h"
 #include "tests/support/maria_kernel.h"
@@ -142,7 +143,7 @@ TEST(Segments, a_circle_is_found_long_before_the_cap)
     std::size_t lost = 0;
     for (std::size_t i = 0; i < set.rays.size(); ++i) {
         const auto answer =
-            kernel::cross_tets(kernel::view_of(packed), params, NO_SUMS, quads[i], quads[set.rays.size() + i]);
+            kernel::cross_tets(kernel::view_of(packed), params, NO_SUMS, false, quads[i], quads[set.rays.size() + i]);
         if (answer.first == LOST) ++lost;
         EXPECT_TRUE(answer.first == LOST || answer.first == NO_HIT) << i;
     }
@@ -154,26 +155,12 @@ TEST(Segments, add_up_to_the_chord_of_the_domain)
     const Scene scene = make_cubes(6);
     const CrossedScene tets(scene, Method::project, Layout::half32);
     RaySet set = hard_ray_set(scene, 0, 3600);
-    const Double3 low = to_double(scene.domain.low()), high = to_double(scene.domain.high());
     std::size_t compared = 0;
     for (std::size_t i = 0; const Hit& answer : tets.answers(set)) {
         const GivenRay& ray = set.rays[i++];
-        const Double3 o = to_double(ray.origin), u = to_double(ray.direction);
-        double begin = 0, end = HUGE_VAL, steep = 1;
-        for (const auto [from, along, least, most] :
-             {std::array{o.x, u.x, low.x, high.x}, std::array{o.y, u.y, low.y, high.y},
-              std::array{o.z, u.z, low.z, high.z}}) {
-            if (along == 0) {
-                if (from <= least || from >= most) begin = HUGE_VAL; // in the plane of a side it misses (D4)
-                continue;
-            }
-            steep = std::min(steep, std::abs(along) / length(u));
-            begin = std::max(begin, std::min((least - from) / along, (most - from) / along));
-            end = std::min(end, std::max((least - from) / along, (most - from) / along));
-        }
-        if (steep < 0.25 || begin >= end) continue; // a side that is met at a grazing angle is met farther off
-        const double chord = (end - begin) * length(u);
-        EXPECT_NEAR(length_of(segments_of(answer).length), chord, 64 * tie_bound(ray.origin)) << i - 1;
+        const auto chord = chord_of_domain(scene.domain, ray);
+        if (!chord) continue;
+        EXPECT_NEAR(length_of(segments_of(answer).length), *chord, 64 * tie_bound(ray.origin)) << i - 1;
         ++compared;
     }
     EXPECT_GT(compared, 500u);

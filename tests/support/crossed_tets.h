@@ -13,7 +13,7 @@
 
 namespace tetrace::test {
 
-/// A scene packed for a kernel of task segments or tally, and what openmp answers and notes there.
+/// A scene packed for a kernel of a task that crosses tets, and what openmp answers and notes there.
 class CrossedScene {
 public:
     CrossedScene(const Scene& scene, Method method, Layout layout, Task task = Task::segments)
@@ -46,7 +46,8 @@ public:
         std::vector<CrossedTets> walks;
         for (std::size_t i = 0; i < set.rays.size(); ++i) {
             openmp::Crossings noted;
-            note(packed_, quads[i], quads[set.rays.size() + i], packed_.tet_count + 1, noted);
+            note(packed_, kernel_.task == Task::absorb, quads[i], quads[set.rays.size() + i], packed_.tet_count + 1,
+                 noted);
             walks.push_back({std::move(noted.tets), std::move(noted.places)});
         }
         return walks;
@@ -55,7 +56,7 @@ public:
                                   const std::vector<CrossedTets>& walks) const
     {
         return judge_crossings(
-            scene_, set, answers, mesh_of_packed_, [&](std::size_t i) { return walks[i]; }, 2);
+            kernel_.task, scene_, set, answers, mesh_of_packed_, [&](std::size_t i) { return walks[i]; }, 2);
     }
 
 private:

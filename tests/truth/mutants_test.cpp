@@ -33,15 +33,15 @@ struct Ended {
 };
 
 /// Checks one backend on a small scene with a program of the build folder.
-Ended check(const std::string& program, const std::string& backend)
+Ended check(const std::string& program, const std::string& backend, const std::string& task)
 {
     const TemporaryFolder folder;
     const std::string path = folder.path().string();
     const int status = std::system(
         fmt::format(
             "cd '{0}' && XDG_CACHE_HOME='{0}' '{1}/{2}' check --backend openmp,{3} --scene cubes --resolution 6 "
-            "--size 48 --views 0,2 --out result.json > out 2> errors",
-            path, TETRACE_PROGRAMS, program, backend)
+            "--size 48 --views 0,2 --task {4} --out result.json > out 2> errors",
+            path, TETRACE_PROGRAMS, program, backend, task)
             .c_str());
     Ended ended{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"), {}};
     ended.json = nlohmann::json::parse(read_text(folder / "result.json"), nullptr, false);
@@ -56,6 +56,7 @@ struct Mutant {
     const char* kernel = "cdt/maria/tet80"; ///< the one with the mistake
     const char* layout = "tet80";
     const char* right_layout = "tet96"; ///< of another kernel, without it
+    const char* task = "trace";
 };
 std::ostream& operator<<(std::ostream& out, const Mutant& mutant)
 {
@@ -81,9 +82,9 @@ TEST_P(Mutants, are_found_and_named_where_the_right_kernel_passes)
 {
     const std::string backend = GetParam().backend;
     if (const std::string reason = why_not(backend); !reason.empty()) GTEST_SKIP() << reason;
-    const Ended right = check("tetrace", backend);
+    const Ended right = check("tetrace", backend, GetParam().task);
     EXPECT_EQ(right.code, 0) << right.out;
-    const Ended wrong = check(std::string("tetrace_mutant_") + GetParam().name, backend);
+    const Ended wrong = check(std::string("tetrace_mutant_") + GetParam().name, backend, GetParam().task);
     EXPECT_EQ(wrong.code, 1) << wrong.out;
     EXPECT_TRUE(contains(wrong.out, GetParam().kernel + ("/cubes/primary/math:exact/api:" + backend)));
     EXPECT_TRUE(contains(wrong.out, "rays differ from openmp's, the first at view"));
@@ -94,9 +95,10 @@ TEST_P(Mutants, are_found_and_named_where_the_right_kernel_passes)
     expect_status(rows, "openmp", GetParam().layout, "ok");
 }
 
-INSTANTIATE_TEST_SUITE_P(each, Mutants,
-                         testing::Values(Mutant{"opencl", "opencl"}, Mutant{"vulkan", "vulkan"},
-                                         Mutant{"cuda_host_reordered", "cuda-host"},
-                                         Mutant{"cuda_host_fused", "cuda-host"},
-                                         Mutant{"cuda_host_bvh2", "cuda-host", "bvh/single/bvh2", "bvh2", "cwbvh"}),
-                         [](const auto& test) { return std::string(test.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    each, Mutants,
+    testing::Values(Mutant{"opencl", "opencl"}, Mutant{"vulkan", "vulkan"}, Mutant{"cuda_host_reordered", "cuda-host"},
+                    Mutant{"cuda_host_fused", "cuda-host"},
+                    Mutant{"cuda_host_dimmer", "cuda-host", "absorb/maria/tet80", "tet80", "half32", "absorb"},
+                    Mutant{"cuda_host_bvh2", "cuda-host", "bvh/single/bvh2", "bvh2", "cwbvh"}),
+    [](const auto& test) { return std::string(test.param.name); });

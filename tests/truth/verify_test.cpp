@@ -6,6 +6,7 @@
 #include "bench/output/difference_pictures.h"
 #include "bench/rows/ray_store.h"
 #include "bench/terminal/interrupts.h"
+#include "core/rays/absorbed.h"
 #include "core/rays/segments.h"
 #include "tests/support/row_runs.h"
 #include "tests/support/temporary_folder.h"
@@ -402,6 +403,29 @@ TEST_F(Verify, segments_are_compared_bit_by_bit_and_judged_by_the_walk)
     const RowRun lost = verified_segments(
         RayKind::random, [](std::span<Hit> hits) { hits[3].face_id = LOST; }, "openmp");
     EXPECT_EQ(traced(lost)->verdicts.lost, 2u);
+}
+
+TEST_F(Verify, absorbed_light_is_compared_bit_by_bit_and_judged_by_the_walk)
+{
+    const auto verified_light = [&](const Damage& damage, const std::string& backend) {
+        RowRun row = damaged_row(RayKind::random, Layout::tet80, damage, backend, Task::absorb);
+        verify_rows({&row}, scene_, options_);
+        return row;
+    };
+    const auto one_unit = [](std::span<Hit> hits) {
+        Absorbed answer = absorbed_of(hits[3]);
+        ++answer.light;
+        hits[3] = as_hit(answer);
+    };
+    for (const char* const backend : {"openmp", "other"}) {
+        const RowRun right = verified_light([](std::span<Hit>) {}, backend);
+        EXPECT_EQ(status_of(right), Status::ok) << reason_of(right);
+        EXPECT_GT(traced(right)->totals.light_units, 0u);
+    }
+    EXPECT_EQ(traced(verified_light(one_unit, "openmp"))->verdicts.wrong, 2u);
+    const RowRun wrong = verified_light(one_unit, "other");
+    EXPECT_EQ(status_of(wrong), Status::wrong);
+    EXPECT_NE(differences_text(wrong).find(" passes"), std::string::npos) << differences_text(wrong);
 }
 
 TEST_F(Verify, sums_of_a_tally_are_judged_tet_by_tet)
