@@ -1,4 +1,5 @@
-// Gmsh's .msh in ASCII, versions 2.2 and 4.1: https://gmsh.info/doc/texinfo/gmsh.html#Gmsh-file-formats
+// Gmsh's .msh, versions 2.2 and 4.1: https://gmsh.info/doc/texinfo/gmsh.html#Gmsh-file-formats
+#include "scenes/builder/gmsh_text.h"
 #include "scenes/builder/word_reader.h"
 
 #include <fmt/format.h>
@@ -12,7 +13,11 @@ namespace {
 
 class GmshReader {
 public:
-    explicit GmshReader(MeshSource& source) : source_(source), words_(source, source.bytes()) {}
+    explicit GmshReader(MeshSource& source)
+        : source_(source), text_(gmsh_text(source)),
+          words_(source, text_.empty() ? source.bytes() : text_, text_.empty())
+    {
+    }
 
     void read()
     {
@@ -40,8 +45,6 @@ private:
         if (!is_new_ && version != "2.2" && version != "2.1" && version != "2")
             words_.fail(fmt::format("version {:.40} of the format is not read", version),
                         "save it as version 4.1 or 2.2: gmsh FILE -save -format msh41 -o NEW.msh");
-        if (words_.integer() != 0)
-            words_.fail("it is binary", "save it as ASCII: gmsh FILE -save -bin 0 -format msh41 -o NEW.msh");
         while (words_.next() != "$EndMeshFormat") {
         }
     }
@@ -166,6 +169,7 @@ private:
     }
 
     MeshSource& source_;
+    std::string text_; ///< of a binary file
     WordReader words_;
     bool is_new_ = false;
     std::unordered_map<std::int64_t, std::int64_t> groups_; ///< per volume

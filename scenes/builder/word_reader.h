@@ -13,11 +13,15 @@ namespace tetrace {
 /// being read, and the line.
 class WordReader {
 public:
-    WordReader(const MeshSource& source, std::string_view text) : source_(source), lines_(text), bytes_(text.size()) {}
+    /// has_lines: whether the file's own lines are read, so that messages may count them.
+    WordReader(const MeshSource& source, std::string_view text, bool has_lines = true)
+        : source_(source), lines_(text), bytes_(text.size()), has_lines_(has_lines)
+    {
+    }
 
     /// Of what comes next, for messages.
     void begin(std::string element) { element_ = std::move(element); }
-    [[nodiscard]] std::string place() const { return lines_.place(element_); }
+    [[nodiscard]] std::string place() const { return has_lines_ ? lines_.place(element_) : element_; }
     [[noreturn]] void fail(const std::string& problem) const { source_.fail(place(), problem); }
     [[noreturn]] void fail(const std::string& problem, const std::string& remedy) const
     {
@@ -49,6 +53,7 @@ private:
     const MeshSource& source_;
     LineReader lines_;
     std::size_t bytes_;
+    bool has_lines_;
     std::string element_ = "header";
     std::vector<std::string_view> words_;
     std::size_t at_ = 0;

@@ -34,6 +34,35 @@ const std::string two_gmsh_4 =
     "1 0 0 0 1 1 1 1 5 1 1\n2 0 0 0 1 1 1 1 6 0\n$EndEntities\n$Nodes\n2 5 1 40\n2 1 1 1\n1\n0 0 0 0.5 0.5\n3 1 0 4\n"
     "2\n3\n40\n5\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n$EndNodes\n$Elements\n3 3 1 9\n2 1 2 1\n1 1 2 3\n3 1 4 1\n7 1 2 3 40\n"
     "3 2 4 1\n9 3 2 40 5\n$EndElements\n";
+template <class Value>
+std::string packed(std::initializer_list<Value> values)
+{
+    std::string bytes;
+    for (const Value value : values)
+        bytes += bytes_of(value, true);
+    return bytes;
+}
+/// The same in binary, version 2.2 or 4.1.
+std::string binary_gmsh(int version)
+{
+    const auto words = packed<std::int32_t>;
+    const auto sizes = packed<std::uint64_t>;
+    const auto reals = packed<double>;
+    const std::string end = "\n$EndMeshFormat\n$PhysicalNames\n1\n3 5 \"a name\"\n$EndPhysicalNames\n";
+    if (version == 2)
+        return "$MeshFormat\n2.2 1 8\n" + words({1}) + end + "$Nodes\n5\n" + words({1}) + reals({0, 0, 0}) +
+               words({2}) + reals({1, 0, 0}) + words({3}) + reals({0, 1, 0}) + words({40}) + reals({0, 0, 1}) +
+               words({5}) + reals({1, 1, 1}) + "\n$EndNodes\n$Elements\n3\n" + words({2, 1, 2, 1, 8, 8, 1, 2, 3}) +
+               words({4, 2, 2, 7, 5, 1, 1, 2, 3, 40, 9, 0, 6, 3, 2, 40, 5}) + "\n$EndElements\n";
+    return "$MeshFormat\n4.1 1 8\n" + words({1}) + end + "$Entities\n" + sizes({1, 0, 0, 2}) + words({1}) +
+           reals({0, 0, 0}) + sizes({0}) + words({1}) + reals({0, 0, 0, 1, 1, 1}) + sizes({1}) + words({5}) +
+           sizes({1}) + words({1}) + words({2}) + reals({0, 0, 0, 1, 1, 1}) + sizes({1}) + words({6}) + sizes({0}) +
+           "\n$EndEntities\n$Nodes\n" + sizes({2, 5, 1, 40}) + words({2, 1, 1}) + sizes({1, 1}) +
+           reals({0, 0, 0, 0.5, 0.5}) + words({3, 1, 0}) + sizes({4, 2, 3, 40, 5}) +
+           reals({1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1}) + "\n$EndNodes\n$Elements\n" + sizes({3, 3, 1, 9}) +
+           words({2, 1, 2}) + sizes({1, 1, 1, 2, 3}) + words({3, 1, 4}) + sizes({1, 7, 1, 2, 3, 40}) +
+           words({3, 2, 4}) + sizes({1, 9, 3, 2, 40, 5}) + "\n$EndElements\n";
+}
 const std::string vtk_points =
     "\na title # of any kind\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 float\n0 0 0 1 0 0\n0 1 0\n0 0 1 1 1 1\n";
 const std::string two_vtk_2 =
@@ -101,6 +130,8 @@ TEST_F(TetFiles, of_all_formats_have_the_same_tets_numbers_and_regions)
     expect_two(parse_mesh("stdin", two_medit), 1, 2);
     expect_two(parse_mesh("a.msh", two_gmsh_2), 7, 9);
     expect_two(parse_mesh("a.msh", two_gmsh_4), 7, 9);
+    expect_two(parse_mesh("a.msh", binary_gmsh(2)), 7, 9);
+    expect_two(parse_mesh("a.msh", binary_gmsh(4)), 7, 9);
     expect_two(parse_mesh("a.vtk", two_vtk_2), 1, 2);
     expect_two(parse_mesh("a.vtk", two_vtk_5), 1, 2);
     write_file(folder_ / "a.node", two_nodes);
@@ -128,7 +159,10 @@ TEST_F(TetFiles, that_are_damaged_are_refused_with_place_and_line)
         {"a.mesh", two_medit, "Triangles 1\n1 2 3 8", "Hexahedra 1\n1", {"Hexahedra (line 12)", "not tets", "Gmsh"}},
         {"a.mesh", two_medit, "Dimension\n3", "Dimension\n2", {"2 dimensions"}},
         {"a.msh", two_gmsh_2, "3 2 40", "3 2 41", {"element 3 of 3 (line 20)", "node 41 is not in the file"}},
-        {"a.msh", two_gmsh_2, "2.2 0", "2.2 1", {"binary", "-bin 0"}},
+        {"a.msh", two_gmsh_2, "2.2 0", "2.2 1", {"$MeshFormat", "their bytes another order"}},
+        {"a.msh", binary_gmsh(2), "$EndNodes", "$EndKnots", {"$Nodes: its end is missing"}},
+        {"a.msh", binary_gmsh(4), "$EndElements\n", "", {"$Elements: its end is missing"}},
+        {"a.msh", binary_gmsh(4).substr(0, 500), "$", "$", {"$Nodes: the file ends inside it"}},
         {"a.msh", two_gmsh_2, "2.2 0", "4.0 0", {"version 4.0", "msh41"}},
         {"a.msh", two_gmsh_2, "7 4 2", "7 5 2", {"element 7 has type 5, which is not a tet"}},
         {"a.msh", two_gmsh_2, "40 0 0 1", "3 0 0 1", {"node 4 of 5 (line 13)", "node 3 is there twice"}},
