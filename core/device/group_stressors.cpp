@@ -90,8 +90,11 @@ Output handed_over(const DefectLaunch& launch)
 {
     const std::uint32_t width = launch.group_items;
     Output words(launch.items + hand_over_words);
-    for (std::uint32_t item = 0; item < launch.items; ++item)
-        words[item] = item + 1 + (item < width ? 0 : words[item / width * width - width + (item + 1) % width] * 31);
+    for (std::uint32_t first = 0; first < launch.items; first += width)
+        for (std::uint32_t local = 0; local < std::min(width, launch.items - first); ++local) {
+            const std::uint32_t next = local + 1 == width ? 0 : local + 1;
+            words[first + local] = first + local + 1 + (first == 0 ? 0 : words[first - width + next] * 31);
+        }
     words[launch.items] = launch.groups();
     std::fill_n(words.begin() + launch.items + 1, launch.groups(), 1);
     return words;

@@ -66,7 +66,7 @@ TEST(Defects, are_those_that_each_implementation_is_known_for)
                 std::string reason;
                 const auto finding = finding_on(*backend, i, defect, reason);
                 if (!finding) {
-                    skipped += name + " on " + device.name + ": " + reason + "\n";
+                    skipped.append(name).append(" on ").append(device.name).append(": ").append(reason).append("\n");
                     continue;
                 }
                 const Judged judged = judge_defect(&expectation, name, *finding);
