@@ -6,6 +6,8 @@
 #include "tests/support/builder_meshes.h"
 #include "tests/support/random.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numeric>
 #include <set>
@@ -222,6 +224,55 @@ TEST(Repair, welds_layers_whose_exact_cuts_have_no_end)
         EXPECT_LT(left, length(sum)) << "layers on each other were made one";
     }
     EXPECT_GT(welded, 0);
+}
+
+namespace {
+
+/// Strips of one tilted plane that cross those of other directions, with heights that differ by rounding.
+TriangleMesh strips(int directions, int count)
+{
+    Random random(1);
+    TriangleMesh mesh;
+    for (int direction = 0; direction < directions; ++direction)
+        for (int strip = 0; strip < count; ++strip) {
+            const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+            const double low = -0.5 + static_cast<double>(strip) / count, high = low + 0.5 / count;
+            for (const auto& [u, v] : {std::pair{-0.5, low}, {0.5, low}, {0.5, high}, {-0.5, high}}) {
+                const double x = u * std::cos(direction) - v * std::sin(direction),
+                             y = u * std::sin(direction) + v * std::cos(direction);
+                mesh.vertices.push_back(to_float(Double3{x, y, 0.3 * x + 0.7 * y + 3e-8 * random.unit()}));
+            }
+            mesh.triangles.push_back({first, first + 1, first + 2});
+            mesh.triangles.push_back({first, first + 2, first + 3});
+        }
+    return mesh;
+}
+
+} // namespace
+
+TEST(Repair, leaves_exact_cuts_at_once_if_these_make_several_times_as_many_crossings)
+{
+    Scene scene = scene_of(strips(6, 10));
+    std::vector<std::string> told;
+    repair(scene, 0, [&](const std::string& stage) { told.push_back(stage); });
+    EXPECT_TRUE(intersecting_pairs(scene.mesh).empty());
+    EXPECT_GT(scene.build.repair.crossing_pairs, 1000u);
+    ASSERT_GE(told.size(), 2u);
+    EXPECT_TRUE(contains(told[1], fmt::format("a tolerance of {:.1e}, pass 1: ", weld_tolerances.front()))) << told[1];
+}
+
+TEST(Repair, finds_the_crossings_of_new_triangles_among_all)
+{
+    const TriangleMesh mesh = scene_of(strips(3, 10)).mesh;
+    Random random(3);
+    std::vector<bool> is_new(mesh.triangles.size());
+    for (std::size_t i = 0; i < is_new.size(); ++i)
+        is_new[i] = random.below(4) == 0;
+    auto expected = intersecting_pairs(mesh);
+    const std::size_t all = expected.size();
+    std::erase_if(expected, [&](const auto& pair) { return !is_new[pair.first] && !is_new[pair.second]; });
+    EXPECT_LT(expected.size(), all);
+    EXPECT_EQ(intersecting_pairs(mesh, is_new), expected);
 }
 
 namespace {

@@ -155,7 +155,8 @@ private:
         const double away = 2.1 * tolerance_;
         std::vector<Edge> pairs;
         CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const GrownBox& a, const GrownBox& b) {
-            if (!slabs[a.info()].excludes(corners(b.info()), away) && !slabs[b.info()].excludes(corners(a.info()), away))
+            if (!slabs[a.info()].excludes(corners(b.info()), away) &&
+                !slabs[b.info()].excludes(corners(a.info()), away))
                 pairs.push_back(edge_of(a.info(), b.info()));
         });
         std::ranges::sort(pairs);

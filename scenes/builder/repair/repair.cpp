@@ -30,6 +30,12 @@ double in_mesh_units(double length, const BuildInfo& build)
 
 constexpr std::size_t max_growth = 4; // passes that more than cut what is new lead nowhere
 
+// Whether passes lead away from an end: their cuts make slivers that cross again.
+bool is_growing(std::size_t pairs, std::size_t pairs_at_first)
+{
+    return pairs > max_growth * pairs_at_first + 1000;
+}
+
 // A mesh on the way to be repaired.
 struct Stage {
     Scene scene;
@@ -133,13 +139,15 @@ void make_passes(Stage& stage, void (*change)(Stage&), const std::function<void(
                  const IsWorthIt& is_worth_it)
 {
     const RepairInfo& info = stage.scene.build.repair;
+    const std::size_t pairs_at_first = stage.pairs.size();
     std::size_t triangles_at_first = 0;
     while (!stage.pairs.empty() && info.passes < max_repair_passes) {
         const std::size_t before = stage.pairs.size();
         make_pass(stage, change, tell);
         if (triangles_at_first == 0) triangles_at_first = stage.scene.mesh.triangles.size();
         if (stage.scene.mesh.triangles.size() > max_growth * triangles_at_first ||
-            stage.pairs.size() > max_pairs_of_pieces(info.crossing_pairs) || !is_worth_it(before))
+            stage.pairs.size() > max_pairs_of_pieces(info.crossing_pairs) ||
+            is_growing(stage.pairs.size(), pairs_at_first) || !is_worth_it(before))
             return;
     }
 }
@@ -173,9 +181,12 @@ void repair(Scene& scene, double at_least, const std::function<void(const std::s
     if (at_least == 0) {
         make_pass(stage, cut, tell);
         const Stage cut_once = stage;
-        make_passes(stage, cut, tell, [&](std::size_t before) { return 2 * stage.pairs.size() < before; });
+        const bool is_shattered = is_growing(stage.pairs.size(), start.pairs.size());
+        if (!is_shattered)
+            make_passes(stage, cut, tell, [&](std::size_t before) { return 2 * stage.pairs.size() < before; });
         if (is_repaired()) return;
         for (const double tolerance : local_tolerances) {
+            if (is_shattered) break; // what is left of these cuts only makes more
             stage = cut_once;
             stage.scene.build.repair.tolerance = tolerance;
             make_passes(stage, cut_and_weld_in_turn, tell, always);
@@ -188,11 +199,11 @@ void repair(Scene& scene, double at_least, const std::function<void(const std::s
         stage.scene.build.repair.tolerance = tolerance;
         make_pass(stage, weld_all, tell);
         const Stage welded_once = stage;
-        make_passes(stage, weld_all, tell, always);
-        if (is_repaired()) return;
-        stage = welded_once;
-        make_passes(stage, cut_and_weld_in_turn, tell, always);
-        if (is_repaired()) return;
+        for (const auto change : {cut_and_weld_in_turn, weld_all}) { // the first takes less time
+            stage = welded_once;
+            make_passes(stage, change, tell, always);
+            if (is_repaired()) return;
+        }
     }
     throw BuilderFailure(
         BUILDER_SELF_INTERSECTION,

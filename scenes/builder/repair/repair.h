@@ -30,8 +30,9 @@ inline constexpr std::array<double, 3> weld_tolerances = {0x1p-20, 0x1p-18, 0x1p
 /// Cuts triangles that cross, overlap or touch, until every two triangles meet only in shared vertices and edges. First
 /// along their exact intersections, by which no vertex moves. Where rounding makes new crossings without end, goes on
 /// after the first cut by turns with weld(), of only the triangles that cross, and exact cuts, with each of
-/// local_tolerances. If that has no end either, begins again with weld() of all and each of weld_tolerances, in every
-/// pass, or in the first and then by turns. at_least: with this tolerance or more, whether triangles cross or not; 0:
+/// local_tolerances. If that has no end either, or if the first cut makes several times as many crossings, begins again
+/// with weld() of all and each of weld_tolerances, in the first pass and then by turns, or in every pass. A way is left
+/// when the crossings grow. at_least: with this tolerance or more, whether triangles cross or not; 0:
 /// as said. scene: cleaned (clean_up) and placed, with as many origins as triangles; mesh, origins and build.repair
 /// change. The mesh's bounding box grows by no more than the tolerance. Throws
 /// BuilderFailure{BUILDER_SELF_INTERSECTION} where no way ends.
