@@ -149,8 +149,8 @@ TEST(Absorption, falsified_answers_and_walks_are_caught)
                 EXPECT_FALSE(is_accepted(tets, set, i, other, walk)) << i;
             }
         const auto expect_caught = [&](const CrossedTets& wrong, const char* mistake, std::size_t k) {
-            if (!wrong.tets.empty())
-                EXPECT_FALSE(is_accepted(tets, set, i, absorption_of(wrong), wrong)) << i << ' ' << mistake << ' ' << k;
+            if (wrong.tets.empty()) return;
+            EXPECT_FALSE(is_accepted(tets, set, i, absorption_of(wrong), wrong)) << i << ' ' << mistake << ' ' << k;
         };
         if (walk.tets.size() < 2) continue;
         const bool is_ended = right.transmittance < MIN_TRANSMITTANCE;
