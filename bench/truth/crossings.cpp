@@ -109,7 +109,7 @@ std::optional<Stretch> depths_within(const Corners& corners, double radius)
     return Stretch{low, high};
 }
 
-/// The sides of a tet by which a ray may enter or leave the domain at a place.
+/// The sides of a tet by which a ray may enter or leave it, or the domain, at a place.
 struct Ways {
     unsigned sides = 0;         ///< a bit each
     const char* flaw = nullptr; ///< of the last other one
@@ -153,7 +153,7 @@ private:
     [[nodiscard]] const char* flaw_of_face(std::uint32_t number, std::size_t side, std::uint32_t place);
     [[nodiscard]] const char* flaw_of_step(std::uint32_t number, std::uint32_t next, std::uint32_t place);
     [[nodiscard]] Ways boundary_of(std::uint32_t number, std::uint32_t place, double sense);
-    [[nodiscard]] const char* flaw_of_last(std::uint32_t place);
+    [[nodiscard]] Ways end_of(std::uint32_t number, std::uint32_t place);
     [[nodiscard]] const char* flaw_of_ends(const CrossedTets& walk);
     [[nodiscard]] const char* flaw_of_chain(const CrossedTets& walk);
     [[nodiscard]] const char* flaw_of_gaps();
@@ -248,30 +248,29 @@ Ways CrossedRay::boundary_of(std::uint32_t number, std::uint32_t place, double s
     return ways;
 }
 
-/// Of a walk that is absorbed inside the domain: its last place must be on some face of its last tet. The exact ray
-/// matters to where it may leave by such a face.
-const char* CrossedRay::flaw_of_last(std::uint32_t place)
+/// The sides by which a walk that is absorbed inside the domain may leave its last tet. The exact ray matters to where
+/// it may do so first.
+Ways CrossedRay::end_of(std::uint32_t number, std::uint32_t place)
 {
-    const char* flaw = nullptr;
+    Ways ways;
     for (std::size_t side = 0; side < 4; ++side) {
-        if (const char* const own = flaw_of_face(chain_.back(), side, place)) {
-            flaw = own;
+        if (const char* const flaw = flaw_of_face(number, side, place)) {
+            ways.flaw = flaw;
             continue;
         }
-        const Corners corners = face(chain_.back(), side);
+        ways.sides |= 1u << side;
+        const Corners corners = face(number, side);
         if (const auto depths = depths_within(corners, 2 * (bound_ + distance_across(corners))))
             end_ = std::min(end_, depths->begin);
     }
-    return std::isinf(end_) ? flaw : nullptr;
+    return ways;
 }
 
 const char* CrossedRay::flaw_of_ends(const CrossedTets& walk)
 {
-    if (is_absorbed_) {
-        if (const char* const flaw = flaw_of_last(walk.places.back())) return flaw;
-    }
-    const Ways last = boundary_of(chain_.back(), walk.places.back(), -1);
-    if (last.sides == 0 && !is_absorbed_) return last.flaw;
+    const std::uint32_t place = walk.places.back();
+    const Ways last = is_absorbed_ ? end_of(chain_.back(), place) : boundary_of(chain_.back(), place, -1);
+    if (last.sides == 0) return last.flaw;
     if (!from_outside_)
         return std::abs(depth_of(walk.places.front())) <= 0x1p-26 ? nullptr : "it does not begin at the ray's origin";
     const Ways first = boundary_of(chain_.front(), walk.places.front(), 1);

@@ -213,7 +213,7 @@ INSTANTIATE_TEST_SUITE_P(each, InspectedTarget,
                                                 "--method all --layout tet80,half32,bvh2,bvh4,cwbvh --entry "
                                                 "inside,rays",
                                                 "--method maria,project --layout tet80,half32,tet64 --entry "
-                                                "segments,tally"}},
+                                                "segments,tally,absorb"}},
                                          Asked{"navi21", {"--method all --entry outside"}},
                                          Asked{"gfx906", {"--method all --entry outside"}},
                                          Asked{"sm_75", {"--method all --entry outside,inside,rays"}},
