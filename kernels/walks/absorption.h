@@ -1,4 +1,5 @@
-// Task absorb: a medium that glows and absorbs, with a value and a density per tet, front to back, in integers alone
+// walks/: the walks from tet to tet, one file each, and how rays enter the domain. This file:
+// task absorb, a medium that glows and absorbs, with a value and a density per tet, front to back, in integers alone
 // (docs/spec/volume.md, S11).
 #ifndef TETRACE_KERNELS_WALKS_ABSORPTION_H
 #define TETRACE_KERNELS_WALKS_ABSORPTION_H

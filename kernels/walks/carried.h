@@ -1,4 +1,4 @@
-// walks/: the walks from tet to tet, one file each, and how rays enter the domain.
+// What a walk along a path carries from tet to tet.
 #ifndef TETRACE_KERNELS_WALKS_CARRIED_H
 #define TETRACE_KERNELS_WALKS_CARRIED_H
 
