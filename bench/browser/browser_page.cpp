@@ -22,6 +22,9 @@ namespace {
 
 using nlohmann::json;
 
+/// Tiles of a page's launches: TILE_WIDTH wide, and this high.
+constexpr unsigned page_tile_height = 8;
+
 template <class Range>
 std::string packed_text(const Range& values)
 {
@@ -127,6 +130,12 @@ std::string script_text(const json& data)
 }
 
 } // namespace
+
+PageView page_view(std::uint32_t number, const TraceJob& job, const PackedScene& packed, std::span<const Hit> hits)
+{
+    return {number, launch_params(job, domain_of(packed), page_tile_height, TetParts{}.log2_bytes),
+            answer_hashes(hits)};
+}
 
 bool has_page_kernel(const KernelId& kernel)
 {

@@ -6,6 +6,7 @@
 #include "core/pack/packed_scene.h"
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,10 @@ struct PageView {
     LaunchParams launch = {};
     AnswerHashes answers; ///< verified
 };
+
+/// number: of the view. job: of primary rays. hits: its verified answers.
+[[nodiscard]] PageView page_view(std::uint32_t number, const TraceJob& job, const PackedScene& packed,
+                                 std::span<const Hit> hits);
 
 /// A kernel with its packed scene, which the caller keeps alive, and its views.
 struct PageKernel {
@@ -33,9 +38,6 @@ struct PageScene {
     std::uint32_t width = 0, height = 0;
     std::vector<PageKernel> kernels;
 };
-
-/// Tiles of the launches of PageView: TILE_WIDTH wide, and this high.
-inline constexpr unsigned page_tile_height = 8;
 
 /// Whether a page can have the kernel.
 [[nodiscard]] bool has_page_kernel(const KernelId& kernel);

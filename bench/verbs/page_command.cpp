@@ -6,7 +6,6 @@
 #include "bench/verbs/commands.h"
 #include "core/base/error.h"
 #include "core/base/files.h"
-#include "core/device/launch.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -46,9 +45,8 @@ PageView verified_view(Verifier& verifier, RowRun& row, std::size_t view)
                                 row_name(row.key), row.scene->view_numbers()[view], verdict.verdicts.wrong,
                                 verdict.verdicts.lost));
     const PackedScene& packed = row.packed->data;
-    const TraceJob job = row.scene->job(view, &packed, row.device);
-    return {row.scene->view_numbers()[view], launch_params(job, domain_of(packed), page_tile_height, 31),
-            answer_hashes(verifier.hits())};
+    return page_view(row.scene->view_numbers()[view], row.scene->job(view, &packed, row.device), packed,
+                     verifier.hits());
 }
 
 PageKernel page_kernel(Verifier& verifier, const RowKey& key, SceneWork& scene, const Options& options)

@@ -141,8 +141,8 @@ TEST(Options, an_unknown_value_is_answered_with_the_accepted_ones)
     EXPECT_TRUE(contains(rejection({"bench", "--format", "xml"}), "table, json, csv or markdown"));
     EXPECT_TRUE(contains(rejection({"bench", "--order", "morton"}), "chains, hilbert, reached or input"));
     EXPECT_TRUE(contains(rejection({"draw"}), "devices, scenes, build, bench, check, render, reproduce, inspect, "
-                                              "trace, dump, rays, judge, compare, show, report, merge, help, "
-                                              "--help or --version"));
+                                              "trace, dump, rays, judge, compare, show, report, page, merge, "
+                                              "help, --help or --version"));
     EXPECT_TRUE(contains(rejection({"help", "draw"}), "bench"));
 }
 

@@ -1,6 +1,5 @@
 // The page of `tetrace page` in Chromium, whose GPU is SwiftShader, which emulates one.
 #include "bench/browser/browser_page.h"
-#include "core/device/launch.h"
 #include "tests/support/bvh_scene.h"
 #include "tests/support/chromium.h"
 #include "tests/support/given_scene.h"
@@ -37,8 +36,7 @@ struct PageCase {
         static_cast<void>(session->trace(job, hits));
         page = {"cubes", "tetrace trace --scene cubes", scene.mesh.triangles.size(), packed.tet_count, size, size, {}};
         page.kernels.push_back({name, kernel, &packed, {}});
-        page.kernels.back().views.push_back(
-            {7, launch_params(job, domain_of(packed), page_tile_height, 31), answer_hashes(hits)});
+        page.kernels.back().views.push_back(page_view(7, job, packed, hits));
     }
     PageCase(const PageCase&) = delete;
     PageCase& operator=(const PageCase&) = delete;

@@ -1,3 +1,4 @@
+// wgsl/: the translator of the kernels' C to WGSL, a program of the build. This file: an expression.
 #pragma once
 
 #include <memory>
