@@ -4,6 +4,7 @@
 #include "bench/options/identity.h"
 #include "bench/report/html/html.h"
 #include "bench/report/png.h"
+#include "core/base/error.h"
 #include "core/device/scene_buffers.h"
 #include "core/device/self_test.h"
 #include "kernels/layouts/probe_chains.h"
@@ -12,6 +13,7 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string_view>
@@ -140,6 +142,17 @@ PageView page_view(std::uint32_t number, const TraceJob& job, const PackedScene&
 bool has_page_kernel(const KernelId& kernel)
 {
     return !webgpu::kernel_text(kernel).empty();
+}
+
+void require_page_layout(Layout layout)
+{
+    std::vector<std::string_view> accepted;
+    for (const KernelId& kernel : all_kernels())
+        if (has_page_kernel(kernel) && std::ranges::find(accepted, name_of(kernel.layout)) == accepted.end())
+            accepted.push_back(name_of(kernel.layout));
+    if (std::ranges::find(accepted, name_of(layout)) == accepted.end())
+        throw Error(ErrorKind::usage, fmt::format("--layout {}: a page has kernels of tetrace's own only: {}",
+                                                  name_of(layout), fmt::join(accepted, ", ")));
 }
 
 std::string browser_page(const std::vector<PageScene>& scenes)

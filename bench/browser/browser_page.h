@@ -41,6 +41,8 @@ struct PageScene {
 
 /// Whether a page can have the kernel.
 [[nodiscard]] bool has_page_kernel(const KernelId& kernel);
+/// Throws Error{usage} that lists the layouts of which a page can have a kernel if this is none of them.
+void require_page_layout(Layout layout);
 
 /// One HTML file that traces the scenes by WebGPU in any browser, compares every ray's answer with the hashes, and
 /// measures. It loads nothing. Throws Error{driver} if openmp's self-test cannot be run.

@@ -22,15 +22,10 @@ std::vector<RowKey> page_rows(const Options& options, const std::string& label)
     Options wanted = options;
     wanted.backends = {reference_backend().name()};
     if (wanted.layouts.empty()) wanted.layouts = {Layout::tet64, Layout::bvh2};
+    std::ranges::for_each(wanted.layouts, require_page_layout);
     std::vector<RowKey> rows = select_rows(wanted, {label});
     std::erase_if(
         rows, [](const RowKey& key) { return key.kernel.schedule != Schedule::tiles || !has_page_kernel(key.kernel); });
-    for (const Layout layout : wanted.layouts)
-        if (std::ranges::none_of(rows, [&](const RowKey& key) { return key.kernel.layout == layout; }))
-            throw Error(ErrorKind::usage,
-                        fmt::format("--layout {}: no kernel of tetrace's own; a page can have half32, "
-                                    "tet64, tet80, bvh2 or cwbvh, among others",
-                                    name_of(layout)));
     return rows;
 }
 

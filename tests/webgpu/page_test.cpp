@@ -105,5 +105,11 @@ TEST(BrowserPage, has_each_kernel_of_ours_and_no_markup_from_its_data)
     EXPECT_TRUE(contains(page, "\\u003c/script>\\u003cb>"));
     EXPECT_FALSE(contains(page, "@DATA@"));
     EXPECT_TRUE(has_page_kernel(bvh2));
-    EXPECT_FALSE(has_page_kernel({.structure = Structure::bvh, .method = Method::single, .layout = Layout::embree}));
+    EXPECT_NO_THROW(require_page_layout(Layout::tet64));
+    try {
+        require_page_layout(Layout::embree);
+        FAIL() << "Embree is not WGSL";
+    } catch (const Error& error) {
+        EXPECT_TRUE(contains(error.what(), "half32, tet64")) << error.what();
+    }
 }
