@@ -1,4 +1,5 @@
 #include "bench/browser/browser_page.h"
+#include "bench/debugging/dump.h"
 #include "bench/measuring/verify.h"
 #include "bench/rows/rows.h"
 #include "bench/terminal/progress.h"
@@ -16,16 +17,20 @@ namespace tetrace {
 
 namespace {
 
-/// openmp's row of each kernel: its answers are those that the page compares with.
+/// openmp's row of each layout, by the method that has rows by default: its answers are those that the page compares
+/// with.
 std::vector<RowKey> page_rows(const Options& options, const std::string& label)
 {
-    Options wanted = options;
-    wanted.backends = {reference_backend().name()};
-    if (wanted.layouts.empty()) wanted.layouts = {Layout::tet64, Layout::bvh2};
-    std::ranges::for_each(wanted.layouts, require_page_layout);
-    std::vector<RowKey> rows = select_rows(wanted, {label});
-    std::erase_if(
-        rows, [](const RowKey& key) { return key.kernel.schedule != Schedule::tiles || !has_page_kernel(key.kernel); });
+    std::vector<RowKey> rows;
+    for (const Layout layout : options.layouts.empty() ? std::vector{Layout::tet64, Layout::bvh2} : options.layouts) {
+        require_page_layout(layout);
+        Options wanted = options;
+        wanted.layouts = {layout};
+        wanted.methods = {one_kernel(wanted).method};
+        wanted.schedules = {Schedule::tiles};
+        wanted.backends = {reference_backend().name()};
+        rows.push_back(select_rows(wanted, {label}).front());
+    }
     return rows;
 }
 
