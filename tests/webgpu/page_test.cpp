@@ -3,6 +3,7 @@
 #include "tests/support/bvh_scene.h"
 #include "tests/support/chromium.h"
 #include "tests/support/given_scene.h"
+#include "tests/support/program_fixture.h"
 #include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
@@ -112,4 +113,26 @@ TEST(BrowserPage, has_each_kernel_of_ours_and_no_markup_from_its_data)
     } catch (const Error& error) {
         EXPECT_TRUE(contains(error.what(), "half32, tet64")) << error.what();
     }
+}
+
+using PageCommand = ProgramTest;
+
+TEST_F(PageCommand, writes_a_row_for_each_layout)
+{
+    const Ended ended = run("page --layout tet20,bvh2,tet80 --size 16 --views 1,3 --out page.html");
+    EXPECT_EQ(ended.code, 0) << ended.errors;
+    const std::string page = file("page.html");
+    for (const char* const part :
+         {R"("name":"cdt project tet20")", R"("name":"bvh bvh2")", R"("name":"cdt maria tet80")", R"("number":3)",
+          R"("trace_command":"tetrace trace --scene cubes)"})
+        EXPECT_TRUE(contains(page, part)) << part;
+}
+
+TEST_F(PageCommand, refuses_what_no_browser_runs)
+{
+    const Ended ended = run("page --layout half32,embree");
+    EXPECT_EQ(ended.code, 2);
+    EXPECT_TRUE(contains(ended.errors, "--layout embree: a page has kernels of tetrace's own only: tet80, "))
+        << ended.errors;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "tetrace.html"));
 }
