@@ -33,4 +33,9 @@ std::string_view page_text()
     return text_named("page");
 }
 
+std::string_view page_script()
+{
+    return text_named("script");
+}
+
 } // namespace tetrace::webgpu

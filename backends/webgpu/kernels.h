@@ -16,7 +16,9 @@ inline constexpr unsigned launch_binding = TETRACE_WEBGPU_LAUNCH_BINDING;
 /// The WGSL of the self-test.
 [[nodiscard]] std::string_view probe_text();
 
-/// The page that runs kernels in a browser (page.html), with "@DATA@" in place of its data.
+/// The page that runs kernels in a browser (page.html), with "@SCRIPT@" and "@DATA@" in place of its script and data.
 [[nodiscard]] std::string_view page_text();
+/// The script of that page (page.js).
+[[nodiscard]] std::string_view page_script();
 
 } // namespace tetrace::webgpu

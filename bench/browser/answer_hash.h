@@ -15,7 +15,7 @@ struct AnswerHashes {
     std::vector<std::uint8_t> rays;         ///< a byte each, to find the first that differs
 };
 
-/// The same bits as hashes_of() of backends/webgpu/page.html.
+/// The same bits as hashes_of() of backends/webgpu/page.js.
 [[nodiscard]] AnswerHashes answer_hashes(std::span<const Hit> hits);
 
 } // namespace tetrace

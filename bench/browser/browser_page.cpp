@@ -131,6 +131,12 @@ std::string script_text(const json& data)
     return text;
 }
 
+/// Replaces the first `place` of the page, which has one.
+void put(std::string& page, std::string_view place, std::string_view text)
+{
+    page.replace(page.find(place), place.size(), text);
+}
+
 } // namespace
 
 PageView page_view(std::uint32_t number, const TraceJob& job, const PackedScene& packed, std::span<const Hit> hits)
@@ -171,9 +177,10 @@ std::string browser_page(const std::vector<PageScene>& scenes)
                  {"scenes", json::array()}};
     for (const PageScene& scene : scenes)
         data["scenes"].push_back(scene_json(scene));
-    constexpr std::string_view place = "@DATA@";
     std::string page(webgpu::page_text());
-    return page.replace(page.find(place), place.size(), script_text(data));
+    put(page, "@SCRIPT@", webgpu::page_script());
+    put(page, "@DATA@", script_text(data)); // last: it may have any text
+    return page;
 }
 
 } // namespace tetrace

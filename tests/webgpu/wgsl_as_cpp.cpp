@@ -1,6 +1,6 @@
-// wgsl_as_cpp IN OUT kept|plain: rewrites WGSL, in the form that kernel_to_wgsl writes, line by line as C++ that
+// wgsl_as_cpp IN OUT kept|plain|rough: rewrites WGSL, in the form that kernel_to_wgsl writes, line by line as C++ that
 // wgsl_types.h makes mean the same, without the entry point. So a compiler that may contract and reassociate can be let
-// loose on it. plain: keep() does nothing.
+// loose on it. plain: keep() does nothing. rough: the device's quotients are some units off.
 #include <fstream>
 #include <iostream>
 #include <re2/re2.h>
@@ -87,6 +87,7 @@ int main(int, char** argv)
     bool goes_on = true;
     while (goes_on && std::getline(in, line)) {
         if (std::string(argv[3]) == "plain") RE2::Replace(&line, R"(bitcast<u32>\(x\) \^ zero)", "bitcast<u32>(x)");
+        if (std::string(argv[3]) == "rough") RE2::Replace(&line, R"(keep\(a / b\))", "rough(a / b)");
         goes_on = rewriter.add(line);
     }
     std::ofstream out(argv[2]);

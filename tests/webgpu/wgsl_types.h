@@ -44,6 +44,12 @@ To bitcast(From from)
 {
     return std::bit_cast<To>(from);
 }
+/// Up to three units in the last place away; WGSL allows two and a half.
+inline f32 rough(f32 quotient)
+{
+    const u32 bits = bitcast<u32>(quotient);
+    return (bits & 0x7FFFFFFFu) < 8u ? quotient : bitcast<f32>(bits - 3u + (bits * 2654435761u >> 8u) % 7u);
+}
 template <class T>
 T select(T no, T yes, bool is_yes)
 {

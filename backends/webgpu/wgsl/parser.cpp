@@ -139,25 +139,16 @@ Expression Parser::unary(bool precise)
             value.choice = nullptr;
             return value;
         }
-    return postfix(precise);
-}
-
-Expression Parser::postfix(bool precise)
-{
-    Expression value = primary(precise);
-    for (;;) {
-        if (accept("."))
-            value = member_of(value);
-        else if (accept("["))
-            value = element_of(value);
-        else
-            return value;
-    }
+    return with_selections(primary(precise));
 }
 
 Expression Parser::place()
 {
-    Expression value = named();
+    return with_selections(named());
+}
+
+Expression Parser::with_selections(Expression value)
+{
     for (;;) {
         if (accept("."))
             value = member_of(value);

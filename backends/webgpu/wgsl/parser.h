@@ -71,7 +71,8 @@ private:
     Expression binary_expression(std::size_t level, bool precise);
     Expression unary(bool precise);
     Expression primary(bool precise);
-    Expression postfix(bool precise);
+    /// The value followed by any number of .member and [index].
+    Expression with_selections(Expression value);
     Expression named();
     Expression call(const std::string& function, bool precise);
     Expression member_of(const Expression& value);

@@ -315,7 +315,7 @@ private:
         return head + type_text + ";\n" + given_to(wgsl_name(local) + " = ", *value, depth);
     }
 
-    /// `left` value; where it is chosen from two of which one is long, only that one is computed.
+    /// `left` value; of a choice with a long side only the chosen side is computed.
     std::string given_to(const std::string& left, const Expression& value, int depth)
     {
         const std::string pad = padding(depth);

@@ -1,0 +1,371 @@
+// The script of page.html, in which DATA is what bench/browser/browser_page.cpp puts there.
+const DATA = JSON.parse(document.getElementById("data").textContent);
+const GUARD = DATA.guard_words, WORDS = DATA.hit_words, POISON = DATA.poison;
+const at = id => document.getElementById(id);
+const query = new URLSearchParams(location.search);
+const result = { page: "tetrace " + DATA.version, commit: DATA.commit, date: new Date().toISOString(), user_agent: navigator.userAgent, rows: [] };
+let stopped = false;
+
+async function unpacked(text) {
+    const bytes = Uint8Array.from(atob(text), c => c.charCodeAt(0));
+    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+    return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+const words_of = bytes => new Uint32Array(bytes.buffer, bytes.byteOffset, bytes.byteLength / 4);
+
+// The two hashes of a ray's answer, as bench/browser/answer_hash.cpp has them.
+function hash_of_ray(words, first, factor) {
+    let h = 0x9E3779B9;
+    for (let i = 0; i < WORDS; ++i) {
+        h = Math.imul(h ^ words[first + i], factor);
+        h ^= h >>> 13;
+    }
+    h = Math.imul(h, 0xC2B2AE35);
+    return (h ^ (h >>> 16)) >>> 0;
+}
+const turned = (h, by) => (h << by) | (h >>> (32 - by));
+function hashes_of(words, rays) {
+    let low = 0, high = 0;
+    const bytes = new Uint8Array(rays);
+    for (let ray = 0; ray < rays; ++ray) {
+        const first = GUARD + ray * WORDS, a = hash_of_ray(words, first, 0x85EBCA6B), b = hash_of_ray(words, first, 0x27D4EB2F);
+        low = Math.imul(turned(low, 5) ^ a, 0x9E3779B1);
+        high = Math.imul(turned(high, 7) ^ b, 0x85EBCA77);
+        bytes[ray] = a & 255;
+    }
+    return { view: [low >>> 0, high >>> 0], bytes };
+}
+
+class LostDevice extends Error {}
+
+class Gpu {
+    static async open() {
+        if (!navigator.gpu) throw new Error("this browser has no WebGPU. Chrome and Edge from 113 on have it (on Linux: chrome://flags/#enable-unsafe-webgpu), Safari from 26, Firefox from 141 on Windows (elsewhere: about:config, dom.webgpu.enabled)");
+        const adapter = await navigator.gpu.requestAdapter({ powerPreference: "high-performance" });
+        if (!adapter) throw new Error("the browser offers no GPU; chrome://gpu or about:support says why");
+        const wanted = ["maxStorageBufferBindingSize", "maxBufferSize", "maxStorageBuffersPerShaderStage"];
+        const device = await adapter.requestDevice({
+            requiredFeatures: adapter.features.has("timestamp-query") ? ["timestamp-query"] : [],
+            requiredLimits: Object.fromEntries(wanted.map(name => [name, adapter.limits[name]])) });
+        const gpu = new Gpu();
+        Object.assign(gpu, { adapter, device, errors: [], lost: null });
+        device.addEventListener("uncapturederror", event => gpu.errors.push(event.error.message));
+        device.lost.then(info => { gpu.lost = info.message || info.reason; });
+        gpu.is_timed = device.features.has("timestamp-query");
+        if (gpu.is_timed) {
+            gpu.queries = device.createQuerySet({ type: "timestamp", count: 2 });
+            gpu.resolved = device.createBuffer({ size: 16, usage: GPUBufferUsage.QUERY_RESOLVE | GPUBufferUsage.COPY_SRC });
+            gpu.times = device.createBuffer({ size: 16, usage: GPUBufferUsage.MAP_READ | GPUBufferUsage.COPY_DST });
+        }
+        return gpu;
+    }
+    check() {
+        if (this.lost) throw new LostDevice("the device was lost: " + this.lost);
+        if (this.errors.length) throw new Error(this.errors[0]);
+    }
+    buffer(bytes, usage = 0) {
+        if (bytes.byteLength > this.device.limits.maxStorageBufferBindingSize) throw new Error(`the scene needs a buffer of ${bytes.byteLength} bytes, and this device has at most ${this.device.limits.maxStorageBufferBindingSize}`);
+        const buffer = this.device.createBuffer({ size: Math.max(16, (bytes.byteLength + 3) & ~3), usage: GPUBufferUsage.STORAGE | GPUBufferUsage.COPY_DST | usage });
+        this.device.queue.writeBuffer(buffer, 0, bytes);
+        return buffer;
+    }
+    async pipeline(code, constants) {
+        const begin = performance.now(), module = this.device.createShaderModule({ code });
+        const pipeline = await this.device.createComputePipelineAsync({ layout: "auto", compute: { module, entryPoint: "main", constants } });
+        return { pipeline, compile_ms: performance.now() - begin };
+    }
+    bindings(pipeline, entries) {
+        return this.device.createBindGroup({ layout: pipeline.getBindGroupLayout(0), entries: entries.map(([binding, buffer]) => ({ binding, resource: { buffer } })) });
+    }
+    // Seconds of one dispatch, by the device's clock where it has one.
+    async dispatch(pipeline, group, groups) {
+        const begin = performance.now(), encoder = this.device.createCommandEncoder();
+        const pass = encoder.beginComputePass(this.is_timed ? { timestampWrites: { querySet: this.queries, beginningOfPassWriteIndex: 0, endOfPassWriteIndex: 1 } } : {});
+        pass.setPipeline(pipeline);
+        pass.setBindGroup(0, group);
+        pass.dispatchWorkgroups(groups);
+        pass.end();
+        if (this.is_timed) {
+            encoder.resolveQuerySet(this.queries, 0, 2, this.resolved, 0);
+            encoder.copyBufferToBuffer(this.resolved, 0, this.times, 0, 16);
+        }
+        this.device.queue.submit([encoder.finish()]);
+        if (!this.is_timed) {
+            await this.device.queue.onSubmittedWorkDone();
+            this.check();
+            return (performance.now() - begin) * 1e-3;
+        }
+        await this.times.mapAsync(GPUMapMode.READ).catch(() => {});
+        this.check();
+        const [first, last] = new BigUint64Array(this.times.getMappedRange());
+        this.times.unmap();
+        return last > first ? Number(last - first) * 1e-9 : (performance.now() - begin) * 1e-3;
+    }
+    async words(buffer, count) {
+        const copy = this.device.createBuffer({ size: count * 4, usage: GPUBufferUsage.MAP_READ | GPUBufferUsage.COPY_DST });
+        const encoder = this.device.createCommandEncoder();
+        encoder.copyBufferToBuffer(buffer, 0, copy, 0, count * 4);
+        this.device.queue.submit([encoder.finish()]);
+        await copy.mapAsync(GPUMapMode.READ).catch(() => {});
+        this.check();
+        const words = new Uint32Array(copy.getMappedRange().slice(0));
+        copy.destroy();
+        return words;
+    }
+}
+
+async function self_test(gpu) {
+    const operations = words_of(await unpacked(DATA.probe.operations)), expected = words_of(await unpacked(DATA.probe.words));
+    const { pipeline } = await gpu.pipeline(DATA.probe.wgsl);
+    const output = gpu.buffer(new Uint32Array(expected.length).fill(POISON), GPUBufferUsage.COPY_SRC);
+    const group = gpu.bindings(pipeline, [[0, gpu.buffer(operations)], [DATA.output_binding, output], [DATA.launch_binding, gpu.buffer(new Uint32Array([expected.length, 0]))]]);
+    await gpu.dispatch(pipeline, group, Math.ceil(expected.length / 64));
+    const words = await gpu.words(output, expected.length);
+    const is_tiny = word => (word & 0x7F800000) === 0 && (word & 0x007FFFFF) !== 0;
+    const wrong = {};
+    let flushed = 0;
+    for (let i = 0; i < words.length; ++i) {
+        if (words[i] === expected[i]) continue;
+        const operation = operations[4 * i], name = DATA.probe.names[operation];
+        const inputs = [1, 2, 3].map(k => operations[4 * i + k]);
+        if (DATA.probe.may_flush.includes(operation) && [expected[i], ...inputs].some(is_tiny)) ++flushed;
+        else wrong[name] = (wrong[name] || 0) + 1;
+    }
+    return { exact: Object.keys(wrong).length === 0, wrong, denormals_flushed: flushed > 0 };
+}
+
+class Session {
+    constructor(gpu, kernel, scene) { Object.assign(this, { gpu, kernel, scene, tiles: 256, launches: 0 }); }
+    async open() {
+        const { pipeline, compile_ms } = await this.gpu.pipeline(this.kernel.wgsl, { tile_height: DATA.tile_height });
+        this.pipeline = pipeline;
+        this.compile_ms = compile_ms;
+        this.rays = this.scene.width * this.scene.height;
+        this.count = 2 * GUARD + WORDS * this.rays;
+        this.output = this.gpu.buffer(new Uint32Array(this.count), GPUBufferUsage.COPY_SRC);
+        this.launch = this.gpu.device.createBuffer({ size: DATA.launch_words * 4, usage: GPUBufferUsage.STORAGE | GPUBufferUsage.COPY_DST });
+        const arrays = [];
+        for (const array of this.kernel.arrays) arrays.push([array.binding, this.gpu.buffer(await unpacked(array.bytes))]);
+        this.group = this.gpu.bindings(pipeline, [...arrays, [DATA.output_binding, this.output], [DATA.launch_binding, this.launch]]);
+        this.all_tiles = Math.ceil(this.scene.width / 8) * Math.ceil(this.scene.height / DATA.tile_height);
+        this.gpu.check();
+    }
+    // Seconds of all launches of a view. A launch ends long before a watchdog would end it.
+    async trace(view) {
+        const words = words_of(await unpacked(view.launch)).slice();
+        let seconds = 0;
+        for (let first = 0; first < this.all_tiles;) {
+            const tiles = Math.min(this.tiles, this.all_tiles - first, 65535);
+            words[DATA.first_tile_word] = first;
+            this.gpu.device.queue.writeBuffer(this.launch, 0, words);
+            const took = await this.gpu.dispatch(this.pipeline, this.group, tiles);
+            seconds += took;
+            this.tiles = Math.max(64, Math.floor(tiles * 0.1 / Math.max(took, 1e-5)));
+            first += tiles;
+        }
+        return seconds;
+    }
+    async verified(view) {
+        this.gpu.device.queue.writeBuffer(this.output, 0, new Uint32Array(this.count).fill(POISON));
+        await this.trace(view);
+        return this.judged(view);
+    }
+    // What is in the output, compared with the right answers to the view that was traced last.
+    async judged(view) {
+        const words = await this.gpu.words(this.output, this.count);
+        for (let i = 0; i < GUARD; ++i) if (words[i] !== POISON || words[this.count - 1 - i] !== POISON) return { words, outside: true, wrong: 0 };
+        const found = hashes_of(words, this.rays);
+        if (found.view[0] === view.hash[0] && found.view[1] === view.hash[1]) return { words, wrong: 0 };
+        const expected = await unpacked(view.ray_hashes);
+        let wrong = 0, first = -1;
+        for (let ray = 0; ray < this.rays; ++ray) if (found.bytes[ray] !== expected[ray]) {
+            ++wrong;
+            if (first < 0) first = ray;
+        }
+        return { words, wrong: Math.max(wrong, 1), first };
+    }
+}
+
+function draw(words, scene, title) {
+    const canvas = document.createElement("canvas");
+    canvas.width = scene.width;
+    canvas.height = scene.height;
+    canvas.title = title;
+    const context = canvas.getContext("2d"), image = context.createImageData(scene.width, scene.height);
+    for (let ray = 0; ray < scene.width * scene.height; ++ray) {
+        const id = words[GUARD + ray * WORDS], shade = Math.imul(id + 1, 0x9E3779B1) >>> 24;
+        image.data.set(id === 0xFFFFFFFF ? [16, 18, 28, 255] : [96 + shade / 2, 110 + shade / 3, 150 + shade / 4, 255], ray * 4);
+    }
+    context.putImageData(image, 0, 0);
+    at("pictures").append(canvas);
+}
+
+function quantile(values, share) {
+    const sorted = [...values].sort((a, b) => a - b), place = share * (sorted.length - 1), low = Math.floor(place);
+    return sorted[low] + (place - low) * ((sorted[low + 1] ?? sorted[low]) - sorted[low]);
+}
+
+function show_row(row) {
+    if (!row.line) {
+        row.line = document.createElement("tr");
+        at("rows").tBodies[0].append(row.line);
+        at("rows").hidden = false;
+    }
+    const samples = row.record.samples_s, median = samples.length ? quantile(samples, 0.5) : 0;
+    const rate = median ? row.record.rays / median / 1e6 : 0;
+    const spread = samples.length > 4 ? (quantile(samples, 0.75) - quantile(samples, 0.25)) / median : 0;
+    const cells = [row.record.kernel, row.record.scene, row.record.rays.toLocaleString("en"), row.record.conformity,
+        rate ? rate.toPrecision(3) : "–", spread ? (100 * spread).toFixed(1) + " %" + (spread > 0.05 ? ", noisy" : "") : "–", samples.length, row.record.compile_ms.toFixed(0)];
+    row.line.replaceChildren(...cells.map((cell, i) => {
+        const element = document.createElement("td");
+        element.textContent = cell;
+        if (i === 3) element.className = row.record.conformity === "bit-exact" ? "good" : "bad";
+        return element;
+    }));
+    row.record.mrays_per_s = rate;
+}
+
+const next_frame = () => new Promise(resolve => setTimeout(resolve, 0));
+async function while_hidden() {
+    while (document.hidden && !stopped) await new Promise(resolve => setTimeout(resolve, 100));
+}
+
+function tell_first_wrong(record, scene, view, found) {
+    if (!found.wrong || !at("first-wrong").hidden) return;
+    const ray = found.first, x = ray % scene.width, y = Math.floor(ray / scene.width), first = GUARD + ray * WORDS;
+    at("first-wrong").hidden = false;
+    at("first-wrong").textContent = ray < 0 ? `${record.kernel}, ${record.scene}: the hash of view ${view.number} differs` :
+        `${record.kernel}, ${record.scene}, view ${view.number}: pixel ${x},${y} is wrong; here it has the words\n` +
+        [...found.words.slice(first, first + WORDS)].map(word => "0x" + word.toString(16).padStart(8, "0")).join(" ") +
+        `\n(triangle, tet, t, u, v, steps). The right answer, step by step:\n${scene.trace_command} --view ${view.number} --pixel ${x},${y}`;
+}
+
+function conformity_of(record) {
+    return record.outside ? "writes outside its output" : record.wrong ? record.wrong.toLocaleString("en") + " rays wrong" : "bit-exact";
+}
+
+async function verify(gpu, rows) {
+    for (const scene of DATA.scenes) for (const kernel of scene.kernels) {
+        if (stopped) return;
+        const record = { kernel: kernel.name, scene: scene.name, rays: scene.width * scene.height * kernel.views.length, wrong: 0, conformity: "", samples_s: [], compile_ms: 0 };
+        const row = { record, scene, kernel };
+        result.rows.push(record);
+        at("state").textContent = `compiling and verifying ${kernel.name} on ${scene.name}`;
+        await next_frame();
+        try {
+            gpu.errors.length = 0;
+            row.session = new Session(gpu, kernel, scene);
+            await row.session.open();
+            record.compile_ms = row.session.compile_ms;
+            for (const view of kernel.views) {
+                const found = await row.session.verified(view);
+                record.wrong += found.wrong;
+                record.outside = record.outside || found.outside;
+                if (kernel === scene.kernels[0] && view === kernel.views[0]) draw(found.words, scene, `${scene.name}, view ${view.number}`);
+                tell_first_wrong(record, scene, view, found);
+            }
+            record.conformity = conformity_of(record);
+        } catch (error) {
+            record.conformity = "error";
+            record.error = error.message;
+            if (error instanceof LostDevice) throw error;
+            at("first-wrong").hidden = false;
+            at("first-wrong").textContent += `${kernel.name}, ${scene.name}: ${error.message}\n`;
+        }
+        rows.push(row);
+        show_row(row);
+    }
+}
+
+// Rows in turn, so that what disturbs the machine disturbs all.
+async function measure(rows, seconds) {
+    const timed = rows.filter(row => row.record.conformity === "bit-exact"), end = performance.now() + 1000 * seconds;
+    for (let round = 0; timed.length && !stopped && (round < 6 || performance.now() < end); ++round) {
+        for (const row of timed) {
+            await while_hidden();
+            if (stopped) return;
+            let sum = 0;
+            for (const view of row.kernel.views) sum += await row.session.trace(view);
+            if (round > 0) row.record.samples_s.push(sum);
+            show_row(row);
+        }
+        at("state").textContent = `measuring, ${Math.max(0, (end - performance.now()) / 1000).toFixed(0)} s left`;
+        await next_frame();
+    }
+}
+
+// The answers of the last sample: a device may compute otherwise once it is hot.
+async function verify_again(rows) {
+    for (const row of rows.filter(row => row.record.samples_s.length)) {
+        const view = row.kernel.views.at(-1), found = await row.session.judged(view);
+        row.record.wrong += found.wrong;
+        row.record.outside = row.record.outside || found.outside;
+        row.record.conformity = conformity_of(row.record);
+        if (row.record.conformity !== "bit-exact") row.record.samples_s = []; // no rate of wrong answers
+        tell_first_wrong(row.record, row.scene, view, found);
+        show_row(row);
+    }
+}
+
+function finish() {
+    const rows = result.rows, bad = rows.filter(row => row.conformity !== "bit-exact").length;
+    const exact = result.self_test && result.self_test.exact;
+    const all = DATA.scenes.reduce((sum, scene) => sum + scene.kernels.length, 0);
+    result.verdict = result.error ? "error" : bad || !exact ? "failed" : rows.length < all ? "stopped" : "conforms";
+    at("state").textContent = stopped ? "stopped" : "done";
+    at("verdict").textContent = result.error ? "Stopped by an error: " + result.error :
+        result.verdict === "conforms" ? `Conforms: every ray of ${rows.length} rows has the right answer, bit for bit.` :
+        result.verdict === "stopped" ? `Stopped: ${rows.length} of ${all} rows were verified.` :
+        `FAILED: ${bad} of ${rows.length} rows${exact ? "" : ", and the self-test"}.`;
+    at("verdict").className = result.verdict === "conforms" ? "good" : "bad";
+    result.label = at("label").value;
+    const save = at("save");
+    save.href = "data:application/json," + encodeURIComponent(JSON.stringify(result, null, 1));
+    save.download = "tetrace-webgpu.json";
+    save.hidden = false;
+    at("stop").hidden = true;
+    document.body.dataset.verdict = result.verdict;
+}
+
+async function run() {
+    at("start").disabled = true;
+    at("stop").hidden = false;
+    at("stop").onclick = () => { stopped = true; };
+    const seconds = Number(query.get("seconds") ?? 10);
+    for (let attempt = 0; attempt < 2; ++attempt) {
+        result.rows.length = 0;
+        at("rows").tBodies[0].replaceChildren();
+        at("pictures").replaceChildren();
+        delete result.error;
+        try {
+            const gpu = await Gpu.open(), info = gpu.adapter.info;
+            result.adapter = { vendor: info.vendor, architecture: info.architecture, device: info.device, description: info.description, fallback: Boolean(info.isFallbackAdapter) };
+            result.clock = gpu.is_timed ? "WebGPU timestamps" : "browser clock";
+            at("device").textContent = [info.vendor, info.architecture, info.device, info.description].filter(Boolean).join(" ") + `; times by ${result.clock}`;
+            result.self_test = await self_test(gpu);
+            at("self-test").textContent = result.self_test.exact ? "Self-test: exact" + (result.self_test.denormals_flushed ? "; denormals are flushed, which no kernel needs" : "") :
+                "Self-test: NOT exact: " + Object.entries(result.self_test.wrong).map(([name, count]) => `${name} (${count})`).join(", ");
+            const rows = [];
+            await verify(gpu, rows);
+            await measure(rows, seconds);
+            await verify_again(rows);
+            break;
+        } catch (error) {
+            result.error = error.message;
+            if (!(error instanceof LostDevice)) break;
+        }
+    }
+    finish();
+}
+
+at("version").textContent = DATA.version;
+at("scenes").textContent = DATA.scenes.map(scene => `${scene.name} (${scene.triangles.toLocaleString("en")} triangles)`).join(", ");
+at("start").onclick = run;
+if (query.has("start")) {
+    // A document in an iframe that stays open holds the load event until the run has ended, for --dump-dom.
+    const frame = document.createElement("iframe");
+    frame.hidden = true;
+    document.body.append(frame);
+    frame.contentDocument.open();
+    run().finally(() => frame.contentDocument.close());
+}
