@@ -6,6 +6,7 @@
 #include "tests/support/program_fixture.h"
 #include "tests/support/temporary_folder.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <string>
 #include <utility>
@@ -19,26 +20,34 @@ constexpr const char* with_webgpu = "--enable-unsafe-webgpu";
 
 /// A view of the cubes in a layout, answered by openmp.
 struct PageCase {
+    KernelId kernel;
     Scene scene = make_cubes(9);
     PackedScene packed;
+    TraceJob job;
     PageScene page;
 
-    explicit PageCase(const KernelId& kernel, const std::string& name, std::uint32_t size = 24)
-        : packed(kernel.structure == Structure::bvh ? make_bvh_scene(scene.mesh, kernel.layout)
-                                                    : pack(scene, kernel.layout, TetOrder::chains))
+    explicit PageCase(const KernelId& id, const std::string& name, std::uint32_t size = 24)
+        : kernel(id), packed(kernel.structure == Structure::bvh ? make_bvh_scene(scene.mesh, kernel.layout)
+                                                                : pack(scene, kernel.layout, TetOrder::chains))
     {
-        TraceJob job;
         job.view = make_view(make_cameras(CameraSet::smoke, scene.mesh).front(), size, size);
         job.width = job.height = size;
         job.start_tet = NO_TET;
         job.max_steps = 10'000;
+        page = {"cubes", "tetrace trace --scene cubes", scene.mesh.triangles.size(), packed.tet_count, size, size, {}};
+        page.kernels.push_back({name, kernel, &packed, {}});
+        page.kernels.back().views.push_back(page_view(7, job, packed, answers()));
+    }
+
+    /// openmp's, through the packed scene as it is now.
+    [[nodiscard]] std::vector<Hit> answers() const
+    {
         std::vector<Hit> hits(job.rays());
         const auto session = openmp_backend().open(0, kernel, {&scene.mesh, &packed}, {.threads = 2});
         static_cast<void>(session->trace(job, hits));
-        page = {"cubes", "tetrace trace --scene cubes", scene.mesh.triangles.size(), packed.tet_count, size, size, {}};
-        page.kernels.push_back({name, kernel, &packed, {}});
-        page.kernels.back().views.push_back(page_view(7, job, packed, hits));
+        return hits;
     }
+
     PageCase(const PageCase&) = delete;
     PageCase& operator=(const PageCase&) = delete;
 };
@@ -83,11 +92,26 @@ TEST_F(PageInChromium, names_the_first_ray_that_is_wrong)
     // The last exit of each record becomes the domain's boundary.
     for (std::size_t quad = 1; quad < tets.packed.tets.size(); quad += HALF32_QUADS)
         tets.packed.tets[quad].z = NO_HALF_FACE;
+    const auto right = tets.page.kernels.front().views.front().answers.rays, wrong = answer_hashes(tets.answers()).rays;
+    const auto first = std::ranges::mismatch(right, wrong).in1 - right.begin();
+    std::size_t count = 0;
+    for (std::size_t ray = 0; ray < right.size(); ++ray)
+        count += right[ray] == wrong[ray] ? 0 : 1;
     const Browsed browsed = run({tets.page});
-    EXPECT_TRUE(contains(browsed.document, "data-verdict=\"failed\"")) << browsed.document;
-    EXPECT_TRUE(contains(browsed.document, " rays wrong</td>")) << browsed.document;
-    EXPECT_TRUE(contains(browsed.document, "cdt project half32, cubes, view 7: pixel ")) << browsed.document;
-    EXPECT_TRUE(contains(browsed.document, "tetrace trace --scene cubes --view 7 --pixel ")) << browsed.document;
+    const std::string pixel = fmt::format("{},{}", first % 24, first / 24);
+    for (const std::string& part : {std::string("data-verdict=\"failed\""), fmt::format("{} rays wrong</td>", count),
+                                    fmt::format("cdt project half32, cubes, view 7: pixel {} is wrong", pixel),
+                                    fmt::format("tetrace trace --scene cubes --view 7 --pixel {}</pre>", pixel)})
+        EXPECT_TRUE(contains(browsed.document + "\n", part)) << part << browsed.document;
+}
+
+TEST_F(PageInChromium, finds_words_outside_of_the_output)
+{
+    PageCase tets(half32, "cdt project half32");
+    ++tets.page.kernels.front().views.front().launch.width; // rows of the output are longer than there is space for
+    const Browsed browsed = run({tets.page});
+    EXPECT_TRUE(contains(browsed.document, "writes outside its output</td>")) << browsed.document;
+    EXPECT_TRUE(contains(browsed.document, "data-verdict=\"failed\""));
 }
 
 TEST_F(PageInChromium, says_what_to_do_without_webgpu)
