@@ -19,8 +19,11 @@ std::string_view text_named(std::string_view name)
 
 std::string_view kernel_text(const KernelId& kernel)
 {
-    if (kernel.math != MathMode::exact || kernel.task != Task::trace) return {};
-    return text_named(std::string(name_of(kernel.method)) + "_" + std::string(name_of(kernel.layout)));
+    if (kernel.math != MathMode::exact) return {};
+    std::string name(name_of(kernel.method));
+    name.append("_").append(name_of(kernel.layout));
+    if (kernel.task != Task::trace) name.append("_").append(name_of(kernel.task));
+    return text_named(name);
 }
 
 std::string_view probe_text()

@@ -3,7 +3,8 @@ const DATA = JSON.parse(document.getElementById("data").textContent);
 const GUARD = DATA.guard_words, WORDS = DATA.hit_words, POISON = DATA.poison;
 const at = id => document.getElementById(id);
 const query = new URLSearchParams(location.search);
-const result = { page: "tetrace " + DATA.version, commit: DATA.commit, date: new Date().toISOString(), user_agent: navigator.userAgent, rows: [] };
+// What the run has found; result_of() makes a result of it.
+const found = { records: [] };
 let stopped = false;
 
 async function unpacked(text) {
@@ -11,6 +12,7 @@ async function unpacked(text) {
     const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
     return new Uint8Array(await new Response(stream).arrayBuffer());
 }
+const array = number => unpacked(DATA.arrays[number]);
 const words_of = bytes => new Uint32Array(bytes.buffer, bytes.byteOffset, bytes.byteLength / 4);
 
 // The two hashes of a ray's answer, as bench/browser/answer_hash.cpp has them.
@@ -69,9 +71,13 @@ class Gpu {
         this.device.queue.writeBuffer(buffer, 0, bytes);
         return buffer;
     }
-    async pipeline(code, constants) {
+    // bindings: of what it reads; its output has the one of outputs.
+    async pipeline(code, bindings, constants) {
         const begin = performance.now(), module = this.device.createShaderModule({ code });
-        const pipeline = await this.device.createComputePipelineAsync({ layout: "auto", compute: { module, entryPoint: "main", constants } });
+        const entries = [...bindings, DATA.output_binding].map(binding => ({
+            binding, visibility: GPUShaderStage.COMPUTE, buffer: { type: binding === DATA.output_binding ? "storage" : "read-only-storage" } }));
+        const layout = this.device.createPipelineLayout({ bindGroupLayouts: [this.device.createBindGroupLayout({ entries })] });
+        const pipeline = await this.device.createComputePipelineAsync({ layout, compute: { module, entryPoint: "main", constants } });
         return { pipeline, compile_ms: performance.now() - begin };
     }
     bindings(pipeline, entries) {
@@ -116,49 +122,58 @@ class Gpu {
 
 async function self_test(gpu) {
     const operations = words_of(await unpacked(DATA.probe.operations)), expected = words_of(await unpacked(DATA.probe.words));
-    const { pipeline } = await gpu.pipeline(DATA.probe.wgsl);
+    const { pipeline } = await gpu.pipeline(DATA.probe.wgsl, [0, DATA.launch_binding]);
     const output = gpu.buffer(new Uint32Array(expected.length).fill(POISON), GPUBufferUsage.COPY_SRC);
     const group = gpu.bindings(pipeline, [[0, gpu.buffer(operations)], [DATA.output_binding, output], [DATA.launch_binding, gpu.buffer(new Uint32Array([expected.length, 0]))]]);
     await gpu.dispatch(pipeline, group, Math.ceil(expected.length / 64));
     const words = await gpu.words(output, expected.length);
     const is_tiny = word => (word & 0x7F800000) === 0 && (word & 0x007FFFFF) !== 0;
-    const wrong = {};
-    let flushed = 0;
+    const wrong = {}, findings = {};
     for (let i = 0; i < words.length; ++i) {
         if (words[i] === expected[i]) continue;
-        const operation = operations[4 * i], name = DATA.probe.names[operation];
+        const { name, finding, value } = DATA.probe.names[operations[4 * i]];
         const inputs = [1, 2, 3].map(k => operations[4 * i + k]);
-        if (DATA.probe.may_flush.includes(operation) && [expected[i], ...inputs].some(is_tiny)) ++flushed;
-        else wrong[name] = (wrong[name] || 0) + 1;
+        if (DATA.probe.may_flush.includes(operations[4 * i]) && [expected[i], ...inputs].some(is_tiny)) {
+            findings.denormals_kept = false;
+            continue;
+        }
+        wrong[name] = (wrong[name] || 0) + 1;
+        findings[finding] = value ?? Math.max(findings[finding] || 0, Math.abs(words[i] - expected[i]));
     }
-    return { exact: Object.keys(wrong).length === 0, wrong, denormals_flushed: flushed > 0 };
+    const exact = Object.keys(wrong).length === 0;
+    const text = (exact ? "exact" : "NOT exact: " + Object.entries(wrong).map(([name, count]) => `${name} (${count})`).join(", ")) +
+        (findings.denormals_kept === false ? "; denormals flushed" : "");
+    return { exact, text, ...findings };
 }
 
 class Session {
-    constructor(gpu, kernel, scene) { Object.assign(this, { gpu, kernel, scene, tiles: 256, launches: 0 }); }
+    constructor(gpu, kernel, scene) { Object.assign(this, { gpu, kernel, scene, tiles: 256, groups: new Map() }); }
     async open() {
-        const { pipeline, compile_ms } = await this.gpu.pipeline(this.kernel.wgsl, { tile_height: DATA.tile_height });
+        const read = [DATA.launch_binding, ...this.kernel.arrays.map(({ binding }) => binding)];
+        if (this.kernel.views.some(view => view.given_rays !== undefined)) read.push(DATA.rays_binding);
+        const { pipeline, compile_ms } = await this.gpu.pipeline(this.kernel.wgsl, read, { tile_height: DATA.tile_height });
         this.pipeline = pipeline;
         this.compile_ms = compile_ms;
-        this.rays = this.scene.width * this.scene.height;
-        this.count = 2 * GUARD + WORDS * this.rays;
-        this.output = this.gpu.buffer(new Uint32Array(this.count), GPUBufferUsage.COPY_SRC);
+        const most = Math.max(...this.kernel.views.map(view => view.rays));
+        this.output = this.gpu.buffer(new Uint32Array(2 * GUARD + WORDS * most), GPUBufferUsage.COPY_SRC);
         this.launch = this.gpu.device.createBuffer({ size: DATA.launch_words * 4, usage: GPUBufferUsage.STORAGE | GPUBufferUsage.COPY_DST });
-        const arrays = [];
-        for (const array of this.kernel.arrays) arrays.push([array.binding, this.gpu.buffer(await unpacked(array.bytes))]);
-        this.group = this.gpu.bindings(pipeline, [...arrays, [DATA.output_binding, this.output], [DATA.launch_binding, this.launch]]);
-        this.all_tiles = Math.ceil(this.scene.width / 8) * Math.ceil(this.scene.height / DATA.tile_height);
+        const buffers = [[DATA.output_binding, this.output], [DATA.launch_binding, this.launch]];
+        for (const { binding, array: number } of this.kernel.arrays) buffers.push([binding, this.gpu.buffer(await array(number))]);
+        for (const view of this.kernel.views) {
+            const rays = view.given_rays === undefined ? [] : [[DATA.rays_binding, this.gpu.buffer(await array(view.given_rays))]];
+            this.groups.set(view, this.gpu.bindings(pipeline, [...buffers, ...rays]));
+        }
         this.gpu.check();
     }
     // Seconds of all launches of a view. A launch ends long before a watchdog would end it.
     async trace(view) {
         const words = words_of(await unpacked(view.launch)).slice();
         let seconds = 0;
-        for (let first = 0; first < this.all_tiles;) {
-            const tiles = Math.min(this.tiles, this.all_tiles - first, 65535);
+        for (let first = 0; first < view.tiles;) {
+            const tiles = Math.min(this.tiles, view.tiles - first, 65535);
             words[DATA.first_tile_word] = first;
             this.gpu.device.queue.writeBuffer(this.launch, 0, words);
-            const took = await this.gpu.dispatch(this.pipeline, this.group, tiles);
+            const took = await this.gpu.dispatch(this.pipeline, this.groups.get(view), tiles);
             seconds += took;
             this.tiles = Math.max(64, Math.floor(tiles * 0.1 / Math.max(took, 1e-5)));
             first += tiles;
@@ -166,23 +181,24 @@ class Session {
         return seconds;
     }
     async verified(view) {
-        this.gpu.device.queue.writeBuffer(this.output, 0, new Uint32Array(this.count).fill(POISON));
-        await this.trace(view);
-        return this.judged(view);
+        this.gpu.device.queue.writeBuffer(this.output, 0, new Uint32Array(2 * GUARD + WORDS * view.rays).fill(POISON));
+        const kernel_s = await this.trace(view);
+        return { kernel_s, ...await this.judged(view) };
     }
     // What is in the output, compared with the right answers to the view that was traced last.
     async judged(view) {
-        const words = await this.gpu.words(this.output, this.count);
-        for (let i = 0; i < GUARD; ++i) if (words[i] !== POISON || words[this.count - 1 - i] !== POISON) return { words, outside: true, wrong: 0 };
-        const found = hashes_of(words, this.rays);
-        if (found.view[0] === view.hash[0] && found.view[1] === view.hash[1]) return { words, wrong: 0 };
-        const expected = await unpacked(view.ray_hashes);
+        const begin = performance.now(), count = 2 * GUARD + WORDS * view.rays, words = await this.gpu.words(this.output, count);
+        const download_s = (performance.now() - begin) * 1e-3;
+        for (let i = 0; i < GUARD; ++i) if (words[i] !== POISON || words[count - 1 - i] !== POISON) return { words, download_s, outside: true, wrong: 0 };
+        const hashes = hashes_of(words, view.rays);
+        if (hashes.view[0] === view.hash[0] && hashes.view[1] === view.hash[1]) return { words, download_s, wrong: 0 };
+        const expected = await array(view.ray_hashes);
         let wrong = 0, first = -1;
-        for (let ray = 0; ray < this.rays; ++ray) if (found.bytes[ray] !== expected[ray]) {
+        for (let ray = 0; ray < view.rays; ++ray) if (hashes.bytes[ray] !== expected[ray]) {
             ++wrong;
             if (first < 0) first = ray;
         }
-        return { words, wrong: Math.max(wrong, 1), first };
+        return { words, download_s, wrong: Math.max(wrong, 1), first };
     }
 }
 
@@ -230,44 +246,68 @@ async function while_hidden() {
     while (document.hidden && !stopped) await new Promise(resolve => setTimeout(resolve, 100));
 }
 
-function tell_first_wrong(record, scene, view, found) {
-    if (!found.wrong || !at("first-wrong").hidden) return;
-    const ray = found.first, x = ray % scene.width, y = Math.floor(ray / scene.width), first = GUARD + ray * WORDS;
+// The first ray that is wrong, in full: its words here, and how to see what is right.
+async function first_wrong_text(record, scene, kernel, view, seen) {
+    const ray = seen.first, first = GUARD + ray * WORDS, where = `${record.kernel}, ${record.scene}, view ${view.number}`;
+    if (ray < 0) return `${where}: the hash of the view differs`;
+    const words = [...seen.words.slice(first, first + WORDS)].map(word => "0x" + word.toString(16).padStart(8, "0")).join(" ");
+    if (view.given_rays === undefined) {
+        const pixel = `${ray % scene.width},${Math.floor(ray / scene.width)}`;
+        return `${where}: pixel ${pixel} is wrong; here it has the words\n${words}\n(${kernel.answer}). The right answer, step by step:\n${scene.trace_command} --view ${view.number} --pixel ${pixel}`;
+    }
+    const reals = new Float32Array((await array(view.given_rays)).buffer);
+    const vector = quad => "(" + [0, 1, 2].map(i => reals[4 * (quad * view.rays + ray) + i]).join(", ") + ")";
+    return `${where}: given ray ${ray} is wrong, from ${vector(1)} in direction ${vector(0)}; here it has the words\n${words}\n(${kernel.answer})`;
+}
+
+async function tell_first_wrong(record, scene, kernel, view, seen) {
+    if (!seen.wrong || !at("first-wrong").hidden) return;
     at("first-wrong").hidden = false;
-    at("first-wrong").textContent = ray < 0 ? `${record.kernel}, ${record.scene}: the hash of view ${view.number} differs` :
-        `${record.kernel}, ${record.scene}, view ${view.number}: pixel ${x},${y} is wrong; here it has the words\n` +
-        [...found.words.slice(first, first + WORDS)].map(word => "0x" + word.toString(16).padStart(8, "0")).join(" ") +
-        `\n(triangle, tet, t, u, v, steps). The right answer, step by step:\n${scene.trace_command} --view ${view.number} --pixel ${x},${y}`;
+    at("first-wrong").textContent = await first_wrong_text(record, scene, kernel, view, seen);
 }
 
 function conformity_of(record) {
-    return record.outside ? "writes outside its output" : record.wrong ? record.wrong.toLocaleString("en") + " rays wrong" : "bit-exact";
+    return record.outside ? "writes outside its output" : record.wrong ? `${record.wrong.toLocaleString("en")} ray${record.wrong === 1 ? "" : "s"} wrong` : "bit-exact";
+}
+
+// records: one for each kernel, in the order of the result's rows.
+function begin_records() {
+    found.records = DATA.scenes.flatMap(scene => scene.kernels.map(kernel => ({
+        kernel: kernel.name, scene: scene.name, rays: kernel.views.reduce((sum, view) => sum + view.rays, 0), wrong: 0, conformity: "",
+        samples_s: [], compile_ms: 0, first_kernel_s: 0, first_wall_s: 0, download_s: 0 })));
+}
+
+async function verify_row(gpu, row) {
+    const { record, scene, kernel } = row;
+    row.session = new Session(gpu, kernel, scene);
+    await row.session.open();
+    record.compile_ms = row.session.compile_ms;
+    for (const view of kernel.views) {
+        const begin = performance.now(), seen = await row.session.verified(view);
+        record.first_kernel_s += seen.kernel_s;
+        record.first_wall_s += (performance.now() - begin) * 1e-3 - seen.download_s;
+        record.download_s += seen.download_s;
+        record.wrong += seen.wrong;
+        record.outside = record.outside || seen.outside;
+        if (kernel === scene.kernels[0] && view === kernel.views[0] && view.given_rays === undefined) draw(seen.words, scene, `${scene.name}, view ${view.number}`);
+        await tell_first_wrong(record, scene, kernel, view, seen);
+    }
+    record.conformity = conformity_of(record);
 }
 
 async function verify(gpu, rows) {
+    let number = 0;
     for (const scene of DATA.scenes) for (const kernel of scene.kernels) {
         if (stopped) return;
-        const record = { kernel: kernel.name, scene: scene.name, rays: scene.width * scene.height * kernel.views.length, wrong: 0, conformity: "", samples_s: [], compile_ms: 0 };
-        const row = { record, scene, kernel };
-        result.rows.push(record);
+        const row = { record: found.records[number++], scene, kernel };
         at("state").textContent = `compiling and verifying ${kernel.name} on ${scene.name}`;
         await next_frame();
         try {
             gpu.errors.length = 0;
-            row.session = new Session(gpu, kernel, scene);
-            await row.session.open();
-            record.compile_ms = row.session.compile_ms;
-            for (const view of kernel.views) {
-                const found = await row.session.verified(view);
-                record.wrong += found.wrong;
-                record.outside = record.outside || found.outside;
-                if (kernel === scene.kernels[0] && view === kernel.views[0]) draw(found.words, scene, `${scene.name}, view ${view.number}`);
-                tell_first_wrong(record, scene, view, found);
-            }
-            record.conformity = conformity_of(record);
+            await verify_row(gpu, row);
         } catch (error) {
-            record.conformity = "error";
-            record.error = error.message;
+            row.record.conformity = "error";
+            row.record.error = error.message;
             if (error instanceof LostDevice) throw error;
             at("first-wrong").hidden = false;
             at("first-wrong").textContent += `${kernel.name}, ${scene.name}: ${error.message}\n`;
@@ -297,34 +337,79 @@ async function measure(rows, seconds) {
 // The answers of the last sample: a device may compute otherwise once it is hot.
 async function verify_again(rows) {
     for (const row of rows.filter(row => row.record.samples_s.length)) {
-        const view = row.kernel.views.at(-1), found = await row.session.judged(view);
-        row.record.wrong += found.wrong;
-        row.record.outside = row.record.outside || found.outside;
+        const view = row.kernel.views.at(-1), seen = await row.session.judged(view);
+        row.record.wrong += seen.wrong;
+        row.record.outside = row.record.outside || seen.outside;
         row.record.conformity = conformity_of(row.record);
         if (row.record.conformity !== "bit-exact") row.record.samples_s = []; // no rate of wrong answers
-        tell_first_wrong(row.record, row.scene, view, found);
+        await tell_first_wrong(row.record, row.scene, row.kernel, view, seen);
         show_row(row);
     }
 }
 
+// A result of tetrace: DATA.result, which has all that does not depend on the device, and what was found.
+function result_of() {
+    const section = structuredClone(DATA.result.tetrace);
+    section.date = new Date().toISOString().slice(0, 19) + "Z";
+    section.host.system = navigator.userAgent;
+    section.host.threads = section.threads = navigator.hardwareConcurrency || 1;
+    if (at("label").value) section.label = at("label").value;
+    if (stopped) section.interrupted = true;
+    if (found.timed_s > 0) section.timed_s = found.timed_s;
+    Object.assign(section.devices[0], found.device);
+    if (found.self_test) Object.assign(section.devices[0].self_test.exact, found.self_test);
+    else delete section.devices[0].self_test;
+    section.rows.forEach((row, number) => fill_row(row, found.records[number]));
+    section.samples_a_row = Math.max(...section.rows.map(row => row.times?.samples_s?.length || 0));
+    return { tetrace: section };
+}
+
+// row: as if it were right.
+function fill_row(row, record) {
+    Object.assign(row.device, found.device);
+    if (found.self_test) Object.assign(row.self_test, found.self_test);
+    if (record?.conformity === "bit-exact") {
+        const samples = record.samples_s;
+        row.times = { ...row.times, clock: found.clock, first_kernel_s: record.first_kernel_s, first_wall_s: record.first_wall_s, download_s: record.download_s };
+        if (record.compile_ms > 0) row.times.compile_s = record.compile_ms * 1e-3;
+        if (!samples.length) return;
+        const [low, median, high] = [0.25, 0.5, 0.75].map(share => quantile(samples, share)), spread = (high - low) / median;
+        Object.assign(row.times, { samples_s: samples, median_s: median, lower_quartile_s: low, upper_quartile_s: high, spread, noisy: spread > 0.05 });
+        row.rates = { mrays_per_s: record.rays / median * 1e-6 };
+        return;
+    }
+    for (const key of ["counts", "visits", "verification", "hit_hash", "views_hash", "times"]) delete row[key];
+    const [status, reason] = !record?.conformity ? ["skipped", "the page ended before it"] :
+        record.conformity === "error" ? ["error", record.error] : ["wrong", `${record.conformity}: not the answers of openmp`];
+    Object.assign(row, { status, reason });
+}
+
 function finish() {
-    const rows = result.rows, bad = rows.filter(row => row.conformity !== "bit-exact").length;
-    const exact = result.self_test && result.self_test.exact;
-    const all = DATA.scenes.reduce((sum, scene) => sum + scene.kernels.length, 0);
-    result.verdict = result.error ? "error" : bad || !exact ? "failed" : rows.length < all ? "stopped" : "conforms";
+    const done = found.records.filter(record => record.conformity), bad = done.filter(record => record.conformity !== "bit-exact").length;
+    const exact = found.self_test && found.self_test.exact, all = found.records.length;
+    const verdict = found.error ? "error" : bad || !exact ? "failed" : done.length < all ? "stopped" : "conforms";
     at("state").textContent = stopped ? "stopped" : "done";
-    at("verdict").textContent = result.error ? "Stopped by an error: " + result.error :
-        result.verdict === "conforms" ? `Conforms: every ray of ${rows.length} rows has the right answer, bit for bit.` :
-        result.verdict === "stopped" ? `Stopped: ${rows.length} of ${all} rows were verified.` :
-        `FAILED: ${bad} of ${rows.length} rows${exact ? "" : ", and the self-test"}.`;
-    at("verdict").className = result.verdict === "conforms" ? "good" : "bad";
-    result.label = at("label").value;
+    at("verdict").textContent = found.error ? "Stopped by an error: " + found.error :
+        verdict === "conforms" ? `Conforms: every ray of ${all} rows has the right answer, bit for bit.` :
+        verdict === "stopped" ? `Stopped: ${done.length} of ${all} rows were verified.` :
+        `FAILED: ${bad} of ${done.length} rows${exact ? "" : ", and the self-test"}.`;
+    at("verdict").className = verdict === "conforms" ? "good" : "bad";
     const save = at("save");
-    save.href = "data:application/json," + encodeURIComponent(JSON.stringify(result, null, 1));
+    save.href = "data:application/json," + encodeURIComponent(JSON.stringify(result_of(), null, 1));
     save.download = "tetrace-webgpu.json";
     save.hidden = false;
     at("stop").hidden = true;
-    document.body.dataset.verdict = result.verdict;
+    document.body.dataset.verdict = verdict;
+}
+
+// As results name devices. Browsers tell little of the GPU, and some nothing.
+function device_of(adapter) {
+    const info = adapter.info || {}, browser = navigator.userAgent.match(/(Firefox|Edg|HeadlessChrome|Chrome|Version)\/[\d.]+/)?.[0] || "a browser";
+    const name = [...new Set([info.vendor, info.architecture, info.device, info.description].filter(Boolean))].join(" ") || "a GPU that the browser does not name";
+    const is_emulated = Boolean(info.isFallbackAdapter) || /swiftshader|llvmpipe/i.test(name);
+    const library = /Firefox/.test(browser) ? "wgpu" : /Version/.test(browser) ? "webkit" : "dawn";
+    const implementation = /swiftshader/i.test(name) ? library + "-swiftshader" : /llvmpipe/i.test(name) ? library + "-lavapipe" : library;
+    return { name, id: name, type: is_emulated ? "emulated" : "gpu", driver: browser.replace("Version", "Safari"), implementation };
 }
 
 async function run() {
@@ -333,25 +418,26 @@ async function run() {
     at("stop").onclick = () => { stopped = true; };
     const seconds = Number(query.get("seconds") ?? 10);
     for (let attempt = 0; attempt < 2; ++attempt) {
-        result.rows.length = 0;
+        begin_records();
         at("rows").tBodies[0].replaceChildren();
         at("pictures").replaceChildren();
-        delete result.error;
+        delete found.error;
         try {
-            const gpu = await Gpu.open(), info = gpu.adapter.info;
-            result.adapter = { vendor: info.vendor, architecture: info.architecture, device: info.device, description: info.description, fallback: Boolean(info.isFallbackAdapter) };
-            result.clock = gpu.is_timed ? "WebGPU timestamps" : "browser clock";
-            at("device").textContent = [info.vendor, info.architecture, info.device, info.description].filter(Boolean).join(" ") + `; times by ${result.clock}`;
-            result.self_test = await self_test(gpu);
-            at("self-test").textContent = result.self_test.exact ? "Self-test: exact" + (result.self_test.denormals_flushed ? "; denormals are flushed, which no kernel needs" : "") :
-                "Self-test: NOT exact: " + Object.entries(result.self_test.wrong).map(([name, count]) => `${name} (${count})`).join(", ");
+            const gpu = await Gpu.open();
+            found.device = device_of(gpu.adapter);
+            found.clock = gpu.is_timed ? "WebGPU timestamps" : "browser clock";
+            at("device").textContent = `${found.device.name}; times by ${found.clock}`;
+            found.self_test = await self_test(gpu);
+            at("self-test").textContent = "Self-test: " + found.self_test.text;
             const rows = [];
             await verify(gpu, rows);
+            const begin = performance.now();
             await measure(rows, seconds);
+            found.timed_s = (performance.now() - begin) * 1e-3;
             await verify_again(rows);
             break;
         } catch (error) {
-            result.error = error.message;
+            found.error = error.message;
             if (!(error instanceof LostDevice)) break;
         }
     }

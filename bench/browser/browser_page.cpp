@@ -14,7 +14,7 @@
 #include <cmath>
 #include <cstddef>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <map>
 #include <span>
 #include <string_view>
 
@@ -34,13 +34,24 @@ std::string packed_text(const Range& values)
     return base64(deflated({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
 }
 
-/// By the numbers of the operations.
-const std::vector<std::string>& operation_names()
+/// By the numbers of the operations: a name, and what a wrong result makes of the result's `self_test`.
+json operations_json()
 {
-    static const std::vector<std::string> names = {"copy",     "multiply-add", "division",   "sum",
-                                                   "product",  "square root",  "conversion", "comparison",
-                                                   "integers", "split",        "cancelled",  "scaled"};
-    return names;
+    const auto named = [](const char* name, const char* finding, bool value) {
+        return json{{"name", name}, {"finding", finding}, {"value", value}};
+    };
+    return {named("copy", "bits_kept", false),
+            named("multiply-add", "contracts", true),
+            {{"name", "division"}, {"finding", "division_ulps"}}, // how many units
+            named("sum", "sums_right", false),
+            named("product", "sums_right", false),
+            {{"name", "square root"}},
+            named("conversion", "conversions_right", false),
+            named("comparison", "comparisons_right", false),
+            named("integers", "integers_right", false),
+            named("split", "reassociates", true),
+            named("cancelled", "reassociates", true),
+            named("scaled", "reassociates", true)};
 }
 
 /// Where divided() of prelude.wgsl rounds correctly on every device; elsewhere WGSL allows an error.
@@ -68,14 +79,33 @@ json probe_json()
     return {{"wgsl", webgpu::probe_text()},
             {"operations", packed_text(operations)},
             {"words", packed_text(words)},
-            {"names", operation_names()},
+            {"names", operations_json()},
             {"may_flush",
              {PROBE_MULTIPLY_ADD, PROBE_DIVIDE, PROBE_ADD, PROBE_MULTIPLY, PROBE_COMPARE, PROBE_SPLIT, PROBE_CANCEL,
               PROBE_SCALE}}};
 }
 
+/// Compressed arrays, each once, however many kernels and views have it.
+class ArrayStore {
+public:
+    /// Its number.
+    template <class Range>
+    std::size_t add(const Range& values)
+    {
+        std::string text = packed_text(values);
+        const auto [place, is_new] = numbers_.try_emplace(text, texts_.size());
+        if (is_new) texts_.push_back(std::move(text));
+        return place->second;
+    }
+    [[nodiscard]] const std::vector<std::string>& texts() const { return texts_; }
+
+private:
+    std::map<std::string, std::size_t> numbers_;
+    std::vector<std::string> texts_;
+};
+
 /// The arrays that the kernel's text reads: a device accepts no others with bindings that follow from the text.
-json arrays_json(const PageKernel& kernel)
+json arrays_json(const PageKernel& kernel, ArrayStore& store)
 {
     json arrays = json::array();
     const auto buffers = scene_buffers(*kernel.packed);
@@ -85,29 +115,36 @@ json arrays_json(const PageKernel& kernel)
             return array.binding == binding && text.find(std::string(array.name) + "[") != std::string::npos;
         };
         if (std::ranges::any_of(scene_arrays(kernel.packed->layout), is_read))
-            arrays.push_back({{"binding", binding}, {"bytes", packed_text(buffers[binding].bytes)}});
+            arrays.push_back({{"binding", binding}, {"array", store.add(buffers[binding].bytes)}});
     }
     return arrays;
 }
 
-json view_json(const PageView& view)
+json view_json(const PageView& view, ArrayStore& store)
 {
-    return {{"number", view.number},
-            {"launch", packed_text(std::span(&view.launch, 1))},
-            {"hash", view.answers.view},
-            {"ray_hashes", packed_text(view.answers.rays)}};
+    json object = {{"number", view.number},
+                   {"launch", packed_text(std::span(&view.launch, 1))},
+                   {"rays", view.answers.rays.size()},
+                   {"tiles", tile_count(view.launch)},
+                   {"hash", view.answers.view},
+                   {"ray_hashes", store.add(view.answers.rays)}};
+    if (!view.given_rays.empty()) object["given_rays"] = store.add(view.given_rays);
+    return object;
 }
 
-json scene_json(const PageScene& scene)
+json scene_json(const PageScene& scene, ArrayStore& store)
 {
     json kernels = json::array();
     for (const PageKernel& kernel : scene.kernels) {
         json views = json::array();
         for (const PageView& view : kernel.views)
-            views.push_back(view_json(view));
+            views.push_back(view_json(view, store));
         kernels.push_back({{"name", kernel.name},
+                           {"answer", traits_of(kernel.kernel.task).finds_hits
+                                          ? "triangle, tet, t, u, v, steps"
+                                          : "first tet, last tet, total, hash, reversed, crossings"},
                            {"wgsl", webgpu::kernel_text(kernel.kernel)},
-                           {"arrays", arrays_json(kernel)},
+                           {"arrays", arrays_json(kernel, store)},
                            {"views", views}});
     }
     return {{"name", scene.name},
@@ -139,9 +176,10 @@ void put(std::string& page, std::string_view place, std::string_view text)
 
 } // namespace
 
-PageView page_view(std::uint32_t number, const TraceJob& job, const PackedScene& packed, std::span<const Hit> hits)
+PageView page_view(std::uint32_t number, const TraceJob& job, const PackedScene& packed,
+                   std::span<const Quad> given_rays, std::span<const Hit> hits)
 {
-    return {number, launch_params(job, domain_of(packed), page_tile_height, TetParts{}.log2_bytes),
+    return {number, launch_params(job, domain_of(packed), page_tile_height, TetParts{}.log2_bytes), given_rays,
             answer_hashes(hits)};
 }
 
@@ -161,8 +199,9 @@ void require_page_layout(Layout layout)
                                                   name_of(layout), fmt::join(accepted, ", ")));
 }
 
-std::string browser_page(const std::vector<PageScene>& scenes)
+std::string browser_page(const std::vector<PageScene>& scenes, const json& result)
 {
+    ArrayStore store;
     json data = {{"version", build_identity().version},
                  {"commit", build_identity().commit},
                  {"guard_words", GUARD_WORDS},
@@ -173,10 +212,13 @@ std::string browser_page(const std::vector<PageScene>& scenes)
                  {"launch_words", sizeof(LaunchParams) / sizeof(std::uint32_t) + 1},
                  {"launch_binding", webgpu::launch_binding},
                  {"output_binding", OUTPUT_BINDING},
+                 {"rays_binding", RAYS_BINDING},
                  {"probe", probe_json()},
+                 {"result", result},
                  {"scenes", json::array()}};
     for (const PageScene& scene : scenes)
-        data["scenes"].push_back(scene_json(scene));
+        data["scenes"].push_back(scene_json(scene, store));
+    data["arrays"] = store.texts();
     std::string page(webgpu::page_text());
     put(page, "@SCRIPT@", webgpu::page_script());
     put(page, "@DATA@", script_text(data)); // last: it may have any text

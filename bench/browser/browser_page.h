@@ -6,6 +6,7 @@
 #include "core/pack/packed_scene.h"
 
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,12 +17,14 @@ namespace tetrace {
 struct PageView {
     std::uint32_t number = 0; ///< in the camera set
     LaunchParams launch = {};
-    AnswerHashes answers; ///< verified
+    std::span<const Quad> given_rays; ///< the caller keeps them alive; empty: the image's own
+    AnswerHashes answers;             ///< verified
 };
 
-/// number: of the view. job: of primary rays. hits: its verified answers.
+/// number: of the view. job: of its rays. given_rays: as a session takes them; none for task trace. hits: its verified
+/// answers.
 [[nodiscard]] PageView page_view(std::uint32_t number, const TraceJob& job, const PackedScene& packed,
-                                 std::span<const Hit> hits);
+                                 std::span<const Quad> given_rays, std::span<const Hit> hits);
 
 /// A kernel with its packed scene, which the caller keeps alive, and its views.
 struct PageKernel {
@@ -45,7 +48,9 @@ struct PageScene {
 void require_page_layout(Layout layout);
 
 /// One HTML file that traces the scenes by WebGPU in any browser, compares every ray's answer with the hashes, and
-/// measures. It loads nothing. Throws Error{driver} if openmp's self-test cannot be run.
-[[nodiscard]] std::string browser_page(const std::vector<PageScene>& scenes);
+/// measures. It loads nothing. result: what it saves, with a row for each kernel, scene after scene, as if each were
+/// right, and one device; the page fills in the device, how each row ended, and its times. Throws Error{driver} if
+/// openmp's self-test cannot be run.
+[[nodiscard]] std::string browser_page(const std::vector<PageScene>& scenes, const nlohmann::json& result);
 
 } // namespace tetrace

@@ -2,6 +2,7 @@
 
 #include "bench/debugging/dump.h"
 #include "bench/debugging/trace_run.h"
+#include "bench/options/browser_api.h"
 #include "bench/options/identity.h"
 #include "bench/rows/row_tracing.h"
 #include "bench/rows/rows.h"
@@ -178,6 +179,10 @@ DumpedCase tile_case(const Options& options, const Backend& backend)
 
 DumpedCase dumped_case(const Options& options, const std::vector<Backend*>& backends)
 {
+    if (options.backends.front() == browser_api)
+        throw Error(ErrorKind::usage, fmt::format("dump: a case of {} is a page, which 'tetrace page' writes; without "
+                                                  "--scene and --defect, dump writes its kernels",
+                                                  browser_api));
     const Backend& backend = backend_named(options.backends.front(), backends);
     return options.defect.empty() ? tile_case(options, backend) : defect_case(backend, options.defect);
 }

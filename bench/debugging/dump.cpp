@@ -1,5 +1,7 @@
 #include "bench/debugging/dump.h"
 
+#include "backends/webgpu/kernels.h"
+#include "bench/options/browser_api.h"
 #include "bench/options/identity.h"
 #include "bench/options/option_values.h"
 #include "bench/rows/rows.h"
@@ -70,6 +72,26 @@ std::string name_of_code(const KernelId& kernel, const Device& device, std::size
                        starts_outside ? "outside" : "inside", index, in_file_name(device.implementation));
 }
 
+/// The WGSL of each task that pages have.
+std::vector<KernelFile> page_files(const KernelId& asked)
+{
+    std::vector<KernelFile> files;
+    for (const Task task : values_of<Task>()) {
+        KernelId kernel = asked;
+        kernel.task = task;
+        const std::string_view text = webgpu::kernel_text(kernel);
+        if (text.empty()) continue;
+        const std::string name =
+            fmt::format("{}_{}_{}.wgsl", name_of(kernel.method), name_of(kernel.layout), name_of(task));
+        files.push_back({name, fmt::format("WGSL of task {}, for any WebGPU device", name_of(task)), "naga " + name,
+                         std::string(text)});
+    }
+    if (files.empty())
+        throw Error(ErrorKind::usage, fmt::format("dump: a page has no kernel of {} in math mode {}", name_of(asked),
+                                                  name_of(asked.math)));
+    return files;
+}
+
 bool is_kept(const Options& options, const Backend& backend, std::size_t index)
 {
     const Device& device = backend.devices()[index];
@@ -81,6 +103,7 @@ bool is_kept(const Options& options, const Backend& backend, std::size_t index)
 std::vector<KernelFile> dumped_files(const Options& options, const std::vector<Backend*>& backends)
 {
     const KernelId kernel = one_kernel(options);
+    if (options.backends.front() == browser_api) return page_files(kernel);
     const Backend& backend = chosen(options, backends);
     std::vector<KernelFile> files = backend.kernel_files(kernel);
     if (files.empty())
@@ -98,6 +121,7 @@ std::vector<KernelFile> driver_code(const Options& options, const std::vector<Ba
                                     std::vector<std::string>& notes)
 {
     const KernelId kernel = one_kernel(options);
+    if (options.backends.front() == browser_api) return {};
     const Backend& backend = chosen(options, backends);
     std::vector<KernelFile> files;
     bool has_device = false;

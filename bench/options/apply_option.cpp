@@ -1,6 +1,6 @@
 #include "bench/options/apply_option.h"
 
-#include "core/device/backend.h"
+#include "bench/options/browser_api.h"
 #include "scenes/catalogue.h"
 #include "scenes/pinned.h"
 
@@ -22,7 +22,8 @@ ApplyOption append_backend(const std::string& option, std::vector<std::string> O
 {
     const auto names = backend_names();
     return {[=](Options& options, const std::string& text) {
-                if (std::ranges::find(names, text) == names.end()) reject_name(option, text, names);
+                const bool is_page = options.verb == Verb::dump && text == browser_api;
+                if (!is_page && std::ranges::find(names, text) == names.end()) reject_name(option, text, names);
                 (options.*list).push_back(text);
             },
             names};

@@ -192,7 +192,7 @@ std::vector<OptionRow> row_options()
          "Keep the rows of this backend ('tetrace devices' lists them). A backend without a usable device has rows "
          "only if it is named here or by --require; they are skipped, with the reason. Default: all with a usable "
          "device and a kernel of the structures kept. 'inspect' asks the drivers of its devices instead of the usual "
-         "targets' compilers.",
+         "targets' compilers. 'dump' has 'webgpu', too: the kernels of 'tetrace page'.",
          reproducing | bit(Verb::dump) | bit(Verb::inspect), true, append_backend("--backend", &Options::backends),
          usual_for(~bit(Verb::render), "API: {}")},
         {"Rows", "--device", "TEXT",
@@ -210,13 +210,14 @@ std::vector<OptionRow> row_options()
          "'absorb', the light of a medium that glows and absorbs, with a value and a density per tet. These are for "
          "maria and project, in exact mode, and for rays of kinds primary, diffuse and random, all of which are "
          "given. Default: trace.",
-         measuring, true, append("--task", &Options::tasks, {Task::trace, Task::segments, Task::tally, Task::absorb})},
+         measuring | bit(Verb::page), true,
+         append("--task", &Options::tasks, {Task::trace, Task::segments, Task::tally, Task::absorb})},
         {"Rows", "--rays", "KIND",
          "Trace rays of this kind: 'primary', the image's own, made by the kernels. The others are made on the "
          "host, from the primary hits: 'shadow', towards a light, and 'ao', short rays in directions around the "
          "normal (for both, any hit will do); 'diffuse', one bounce; 'random', lines through the domain. Default: "
          "primary.",
-         measuring | bit(Verb::trace) | bit(Verb::dump), true, append("--rays", &Options::rays),
+         measuring | bit(Verb::trace) | bit(Verb::dump) | bit(Verb::page), true, append("--rays", &Options::rays),
          usual_for(~(measuring | bit(Verb::dump)), "kind of rays: {}")},
         {"Rows", "--ray-order", "ORDER",
          "Order of the rays of all kinds except primary: 'tiles', in the order of their pixels; 'morton', sorted by "

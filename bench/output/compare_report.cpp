@@ -251,6 +251,8 @@ std::string summary_text(const ResultComparison& comparison)
         text += fmt::format("{}{} NOISY", separator, count);
     if (const std::size_t count = comparison.count(RowOutcome::different); count > 0)
         text += fmt::format("; {} DIFFERENT, not compared", count);
+    if (const std::size_t count = comparison.count(RowOutcome::agreed); count > 0)
+        text += fmt::format("; {} of another API with the SAME ANSWERS", count);
     if (const std::size_t count = too_few_count(comparison); count > 0)
         text += fmt::format("; {} with fewer than {} samples, so no interval", count, min_samples);
     if (const auto mean = comparison.geometric_mean())

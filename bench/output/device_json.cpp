@@ -1,5 +1,6 @@
 #include "bench/output/device_json.h"
 
+#include "bench/options/browser_api.h"
 #include "bench/results/result_file.h"
 #include "bench/results/result_value.h"
 #include "bench/results/self_test_json.h"
@@ -108,7 +109,7 @@ RowDevice row_device_from(const ResultValue& value)
 {
     RowDevice device;
     device.backend = value.at("backend").line();
-    if (find_backend(device.backend) == nullptr) value.at("backend").reject("is not a backend of this tetrace");
+    if (!is_known_api(device.backend)) value.at("backend").reject("is not a backend of this tetrace");
     device.index = value.at("index").count();
     device.device = device_from(value);
     device.hardware = value.at("hardware").count();

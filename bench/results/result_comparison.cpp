@@ -103,7 +103,8 @@ std::string different_rays(const ResultFile& a, const ResultRow& row_a, const Re
 std::string different_work(const ResultFile& a, const ResultRow& row_a, const ResultFile& b, const ResultRow& row_b)
 {
     std::string difference = row_a.scene.empty() ? other_searches(a, b) : different_rays(a, row_a, b, row_b);
-    if (difference.empty()) difference = other_launches(launches_of(a, row_a), launches_of(b, row_b));
+    if (difference.empty() && row_a.api() == row_b.api())
+        difference = other_launches(launches_of(a, row_a), launches_of(b, row_b));
     return difference.empty() ? other_answers(row_a, row_b) : difference;
 }
 
@@ -204,6 +205,19 @@ std::string name_without_scene(const ResultRow& row)
     return name;
 }
 
+/// The row's name without its API, which it ends with.
+std::string name_without_api(const ResultRow& row)
+{
+    return row.name.substr(0, row.name.find("/api:"));
+}
+
+bool share_an_api(const ResultFile& a, const ResultFile& b)
+{
+    return std::ranges::any_of(a.rows, [&](const ResultRow& row) {
+        return std::ranges::find(b.rows, row.backend, &ResultRow::backend) != b.rows.end();
+    });
+}
+
 /// Whether the names differ only by the size of images, which one of them has, or by the name of the same scene, as of
 /// a .tet file.
 bool are_of_one_row(const ResultFile& file_a, const ResultRow& a, const ResultFile& file_b, const ResultRow& b)
@@ -225,13 +239,18 @@ std::map<const ResultRow*, const ResultRow*> partners_in(const ResultFile& befor
     };
     for (const ResultRow* row : before.timed_rows())
         pair(row, after.find_row(row->name));
-    for (const ResultRow& row : before.rows) {
-        if (partners.contains(&row)) continue;
-        const auto found = std::ranges::find_if(after.rows, [&](const ResultRow& one) {
-            return !paired.contains(&one) && are_of_one_row(before, row, after, one);
-        });
-        if (found != after.rows.end()) pair(&row, &*found);
-    }
+    const auto pair_others = [&](const auto& are_partners) {
+        for (const ResultRow& row : before.rows) {
+            if (partners.contains(&row)) continue;
+            const auto found = std::ranges::find_if(
+                after.rows, [&](const ResultRow& one) { return !paired.contains(&one) && are_partners(row, one); });
+            if (found != after.rows.end()) pair(&row, &*found);
+        }
+    };
+    pair_others([&](const ResultRow& row, const ResultRow& one) { return are_of_one_row(before, row, after, one); });
+    if (!share_an_api(before, after))
+        pair_others(
+            [](const ResultRow& row, const ResultRow& one) { return name_without_api(row) == name_without_api(one); });
     return partners;
 }
 
@@ -272,7 +291,10 @@ void find_different_work(const ResultFile& before, const ResultFile& after, std:
         if (row.outcome != RowOutcome::compared) continue;
         row.difference = different_work(before, *row.before, after, *row.after);
         any_compared = any_compared || row.difference.empty();
-        if (row.difference.empty()) continue;
+        if (row.difference.empty()) {
+            if (row.before->api() != row.after->api()) row.outcome = RowOutcome::agreed;
+            continue;
+        }
         row.outcome = RowOutcome::different;
         reasons[row.difference].push_back(&row);
     }
@@ -315,6 +337,7 @@ std::string ComparedRow::verdict() const
     case RowOutcome::missing: return "MISSING";
     case RowOutcome::added: return "NEW";
     case RowOutcome::untimed: return "NOT TIMED";
+    case RowOutcome::agreed: return "SAME ANSWERS";
     }
     throw Error(ErrorKind::internal, "ComparedRow::verdict: no such outcome");
 }
@@ -326,6 +349,8 @@ std::string ComparedRow::note() const
         return fmt::format("fewer than {} samples, so no interval: {} in A and {} in B", min_samples,
                            before->samples_s.size(), after->samples_s.size());
     if (outcome == RowOutcome::different) return difference;
+    if (outcome == RowOutcome::agreed)
+        return fmt::format("{} in A and {} in B, whose rates are not compared", before->api(), after->api());
     const std::string a = why_untimed("A", before), b = why_untimed("B", after);
     return a + (a.empty() || b.empty() ? "" : "; ") + b;
 }

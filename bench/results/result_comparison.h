@@ -56,6 +56,7 @@ enum class RowOutcome {
     missing,   ///< timed before; missing, skipped, unsupported or without samples after
     added,     ///< only timed after
     untimed,   ///< timed in neither
+    agreed,    ///< timed in both, under two APIs, with the same answers; rates of two APIs are not compared
 };
 
 /// A row of two results. Refers to them.
@@ -68,8 +69,8 @@ struct ComparedRow {
     std::string disturbance = {};      ///< of compared rows: why the machine, and not the row, may have changed
 
     [[nodiscard]] const std::string& name() const { return (before != nullptr ? before : after)->name; }
-    /// "SAME", "FASTER", "SLOWER", "UNSURE" and "NOISY" of compared rows; else "DIFFERENT", "FAILED", "MISSING", "NEW"
-    /// or "NOT TIMED".
+    /// "SAME", "FASTER", "SLOWER", "UNSURE" and "NOISY" of compared rows; else "DIFFERENT", "FAILED", "MISSING", "NEW",
+    /// "NOT TIMED" or "SAME ANSWERS".
     [[nodiscard]] std::string verdict() const;
     /// Compared only by its medians: the samples allow no interval, so that its verdict is "UNSURE" however far the
     /// medians lie apart.
@@ -100,7 +101,8 @@ struct ResultComparison {
     [[nodiscard]] std::vector<const ComparedRow*> regressions(bool allow_missing) const;
 };
 
-/// Compares rows of equal names, of those whose name the regular expression matches (bench/options/name_filter.h;
+/// Compares rows of equal names, and where the results have no API in common, a row of one API with that of another,
+/// for their answers alone; of those whose name the regular expression matches (bench/options/name_filter.h;
 /// empty: all). A row timed in both whose scenes' hashes, views, sizes or hit hashes differ did different work, and is
 /// not compared; so did exit searches of other numbers (bench/results/result_comparison.h). A row is noisy where its
 /// pulse moved by noisy_pulse (bench/statistics/statistics.h) in either run, or, on the host and one machine, between

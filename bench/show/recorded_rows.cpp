@@ -1,5 +1,6 @@
 #include "bench/show/recorded_rows.h"
 
+#include "bench/options/browser_api.h"
 #include "bench/output/device_json.h"
 #include "bench/output/row_fields.h"
 
@@ -79,7 +80,7 @@ KernelId known_kernel(const KernelId& named, const ResultValue& row)
 
 void require_backend(const ResultValue& row)
 {
-    if (find_backend(row.at("backend").line()) == nullptr) row.at("backend").reject("is not a backend of this tetrace");
+    if (!is_known_api(row.at("backend").line())) row.at("backend").reject("is not a backend of this tetrace");
 }
 
 RowRecord record_from(const ResultValue& value, const ResultRow& row)

@@ -1,8 +1,11 @@
 #include "bench/browser/browser_page.h"
+#include "bench/browser/met_parts.h"
 #include "bench/debugging/dump.h"
-#include "bench/measuring/verify.h"
-#include "bench/rows/rows.h"
-#include "bench/terminal/progress.h"
+#include "bench/measuring/scene_rows.h"
+#include "bench/options/browser_api.h"
+#include "bench/output/bench_report.h"
+#include "bench/rows/row_tracing.h"
+#include "bench/rows/sized_scene.h"
 #include "bench/terminal/text.h"
 #include "bench/verbs/commands.h"
 #include "core/base/error.h"
@@ -10,6 +13,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -17,65 +21,121 @@ namespace tetrace {
 
 namespace {
 
-/// openmp's row of each layout, by the method that has rows by default: its answers are those that the page compares
-/// with.
-std::vector<RowKey> page_rows(const Options& options, const std::string& label)
+/// openmp's rows of each layout, by the method that has rows by default: their answers are those that the page compares
+/// with. Throws Error{usage} if a page has no kernel of a row.
+std::vector<RowKey> page_rows(const Options& options)
 {
     std::vector<RowKey> rows;
-    for (const Layout layout : options.layouts.empty() ? std::vector{Layout::tet64, Layout::bvh2} : options.layouts) {
-        require_page_layout(layout);
-        Options wanted = options;
-        wanted.layouts = {layout};
-        wanted.methods = {one_kernel(wanted).method};
-        wanted.schedules = {Schedule::tiles};
-        wanted.backends = {reference_backend().name()};
-        rows.push_back(select_rows(wanted, {label}).front());
-    }
+    for (const std::string& label : scene_labels(options))
+        for (const Layout layout : options.layouts) {
+            require_page_layout(layout);
+            Options wanted = options;
+            wanted.layouts = {layout};
+            wanted.methods = {one_kernel(wanted).method};
+            wanted.schedules = {Schedule::tiles};
+            wanted.backends = {reference_backend().name()};
+            for (RowKey& row : select_rows(wanted, {label})) {
+                if (!has_page_kernel(row.kernel))
+                    throw Error(ErrorKind::usage, fmt::format("page: a page has no kernel of {}; tasks are trace, "
+                                                              "segments and absorb",
+                                                              row_name(row)));
+                rows.push_back(std::move(row));
+            }
+        }
     return rows;
 }
 
-/// Throws Error{wrong_result} if an answer is not right: the page takes them for right.
-PageView verified_view(Verifier& verifier, RowRun& row, std::size_t view)
-{
-    const ImageVerdict verdict = verifier.verify(row, view);
-    if (!verdict.verdicts.clean())
-        throw Error(ErrorKind::wrong_result,
-                    fmt::format("page: {}, view {}: {} rays are wrong and {} lost, so a page cannot judge by them; "
-                                "leave out this --layout",
-                                row_name(row.key), row.scene->view_numbers()[view], verdict.verdicts.wrong,
-                                verdict.verdicts.lost));
-    const PackedScene& packed = row.packed->data;
-    return page_view(row.scene->view_numbers()[view], row.scene->job(view, &packed, row.device), packed,
-                     verifier.hits());
-}
-
-PageKernel page_kernel(Verifier& verifier, const RowKey& key, SceneWork& scene, const Options& options)
-{
-    RowRun row = open_row(key, scene, options);
-    if (row.session == nullptr)
-        throw Error(ErrorKind::missing, fmt::format("page: {}: {}", row_name(key), reason_of(row)));
-    PageKernel kernel = {kernel_title(key), key.kernel, &row.packed->data, {}};
-    for (std::size_t view = 0; view < scene.views().size(); ++view) {
-        progress_line().show(fmt::format("tracing and verifying {} on {}", kernel.name, scene.label()),
-                             static_cast<double>(view) / static_cast<double>(scene.views().size()));
-        kernel.views.push_back(verified_view(verifier, row, view));
+/// The scenes with their kernels, as the rows are verified one after the other. Refers to the rows' packed scenes.
+class PageMaker {
+public:
+    void see(const SeenImage& image)
+    {
+        const RowRun& row = image.row;
+        const bool is_given = traits_of(row.key.kernel.task).takes_rays;
+        const std::span<const Quad> given = is_given ? std::span<const Quad>(row.scene->given_rays().rows(
+                                                           *row.scene, row.key, &row.packed->data, image.view))
+                                                     : std::span<const Quad>();
+        if (image.hits.empty()) return; // given rays, of which this view has none
+        views_[row_name(row.key)].push_back(page_view(row.scene->view_numbers()[image.view], job_of(row, image.view),
+                                                      row.packed->data, given, image.hits));
     }
-    return kernel;
+
+    PageKernel kernel_of(RowRun& row)
+    {
+        packed_.push_back(std::make_unique<PackedScene>(with_met_parts_only(row)));
+        return {kernel_title(row.key), row.key.kernel, packed_.back().get(), std::move(views_[row_name(row.key)])};
+    }
+
+private:
+    std::map<std::string, std::vector<PageView>> views_; ///< by the row's name
+    std::vector<std::unique_ptr<PackedScene>> packed_;
+};
+
+/// Throws Error{wrong_result} if an answer is not right: the page takes them for right.
+void require_right(const std::vector<RowRun>& rows)
+{
+    for (const RowRun& row : rows)
+        if (status_of(row) != Status::ok)
+            throw Error(row.session == nullptr ? ErrorKind::missing : ErrorKind::wrong_result,
+                        fmt::format("page: {} is {}: {}; a page judges by these answers, so leave out its --layout",
+                                    row_name(row.key), name_of(status_of(row)), reason_of(row)));
 }
 
-PageScene page_scene(SceneWork& scene, const Options& options)
+PageScene page_scene(const SceneWork& scene)
 {
-    Verifier verifier(scene, options);
-    PageScene page = {scene.label(),
-                      "tetrace trace " + scene.arguments(),
-                      scene.loaded().scene.mesh.triangles.size(),
-                      scene.counts().tets,
-                      scene.width(),
-                      scene.height(),
-                      {}};
-    for (const RowKey& key : page_rows(options, scene.label()))
-        page.kernels.push_back(page_kernel(verifier, key, scene, options));
-    return page;
+    return {scene.label(),
+            "tetrace trace " + scene.arguments(),
+            scene.loaded().scene.mesh.triangles.size(),
+            scene.counts().tets,
+            scene.width(),
+            scene.height(),
+            {}};
+}
+
+/// What the page's device would be if it did all right; the page fills in the rest.
+RowDevice page_device()
+{
+    RowDevice device;
+    device.backend = browser_api;
+    device.device.name = "not known";
+    device.device.kind = DeviceKind::gpu;
+    device.device.threads = 0;
+    device.self_tests[MathMode::exact] = {};
+    return device;
+}
+
+/// openmp's verified row as the page's, without times.
+RowRecord page_record(const RowRun& row, const RowDevice& device)
+{
+    RowRecord record = record_of(row);
+    record.key.backend = browser_api;
+    record.device = device.device;
+    record.self_test = device.self_tests.at(MathMode::exact);
+    record.clock = "not known";
+    record.setup.compile_s = record.setup.upload_s = 0;
+    record.setup.compile_cached = false;
+    auto& traced = std::get<Traced>(record.outcome);
+    traced.compared = true;
+    traced.kernel_s = traced.wall_s = traced.download_s = 0;
+    return record;
+}
+
+/// What the page saves, a result of `bench`.
+nlohmann::json page_result(const SceneRows& run, const Options& options)
+{
+    BenchResult result;
+    result.devices = {page_device()};
+    for (const RowRun& row : run.rows)
+        result.rows.push_back(page_record(row, result.devices.front()));
+    result.scenes = scene_records(run, options);
+    result.comparisons.resize(result.rows.size());
+    result.best_bvhs.resize(result.rows.size());
+    Options as_bench = options;
+    as_bench.verb = Verb::bench;
+    nlohmann::json head = result_head(as_bench);
+    head.erase("conditions"); // of this machine
+    head["host"] = {{"cpu", "a browser's machine"}, {"system", "a browser"}, {"threads", 1}};
+    return bench_report(result, as_bench, std::move(head)).json;
 }
 
 } // namespace
@@ -83,15 +143,19 @@ PageScene page_scene(SceneWork& scene, const Options& options)
 int page_command(const Options& options)
 {
     const std::filesystem::path path = options.out.value_or("tetrace.html");
-    Options with_scene = options;
-    if (with_scene.scenes.empty()) with_scene.scenes = {"cubes"};
-    std::vector<std::unique_ptr<SceneWork>> scenes; // pages refer to their packed forms
+    Options wanted = options;
+    if (wanted.scenes.empty()) wanted.scenes = {"cubes"};
+    if (wanted.layouts.empty()) wanted.layouts = {Layout::tet64, Layout::bvh2};
+    PageMaker maker;
+    SceneRows run = open_and_verify(page_rows(wanted), wanted, [&](const SeenImage& image) { maker.see(image); });
+    require_right(run.rows);
     std::vector<PageScene> pages;
-    for (const SceneRequest& request : scene_requests(with_scene)) {
-        scenes.push_back(std::make_unique<SceneWork>(load_work(request, with_scene)));
-        pages.push_back(page_scene(*scenes.back(), with_scene));
+    for (const auto& scene : run.scenes) {
+        pages.push_back(page_scene(*scene));
+        for (RowRun& row : run.rows)
+            if (row.key.scene == scene->label()) pages.back().kernels.push_back(maker.kernel_of(row));
     }
-    const std::string page = browser_page(pages);
+    const std::string page = browser_page(pages, page_result(run, wanted));
     if (path == "-") {
         print(page);
         return 0;

@@ -7,7 +7,9 @@
 #include "tests/support/temporary_folder.h"
 
 #include <algorithm>
+#include <functional>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 
@@ -36,7 +38,17 @@ struct PageCase {
         job.max_steps = 10'000;
         page = {"cubes", "tetrace trace --scene cubes", scene.mesh.triangles.size(), packed.tet_count, size, size, {}};
         page.kernels.push_back({name, kernel, &packed, {}});
-        page.kernels.back().views.push_back(page_view(7, job, packed, answers()));
+        page.kernels.back().views.push_back(page_view(7, job, packed, {}, answers()));
+    }
+
+    /// A result with as many rows as the page has kernels.
+    [[nodiscard]] nlohmann::json result() const
+    {
+        nlohmann::json section = {{"host", nlohmann::json::object()},
+                                  {"devices", {{{"self_test", {{"exact", nlohmann::json::object()}}}}}}};
+        for (std::size_t i = 0; i < page.kernels.size(); ++i)
+            section["rows"].push_back({{"device", nlohmann::json::object()}, {"self_test", nlohmann::json::object()}});
+        return {{"tetrace", section}};
     }
 
     /// openmp's, through the packed scene as it is now.
@@ -62,9 +74,9 @@ protected:
         if (find_chromium().empty())
             GTEST_SKIP() << "no Chromium (Debian's package chromium-headless-shell): the page was opened by nobody";
     }
-    Browsed run(const std::vector<PageScene>& scenes, const char* options = with_webgpu)
+    Browsed run(const PageCase& of, const char* options = with_webgpu)
     {
-        return browse(folder_.path(), browser_page(scenes), "?start&seconds=0", options);
+        return browse(folder_.path(), browser_page({of.page}, of.result()), "?start&seconds=0", options);
     }
 
     TemporaryFolder folder_;
@@ -76,14 +88,13 @@ TEST_F(PageInChromium, verifies_and_measures_each_row)
 {
     PageCase tets(half32, "cdt project half32"), bvh(bvh2, "bvh bvh2");
     tets.page.kernels.push_back(bvh.page.kernels.front());
-    const Browsed browsed = run({tets.page});
+    const Browsed browsed = run(tets);
     EXPECT_TRUE(contains(browsed.document, "data-verdict=\"conforms\"")) << browsed.document << browsed.console;
     for (const char* const part : {"Self-test: exact",
                                    "<td>cdt project half32</td><td>cubes</td><td>576</td>"
                                    "<td class=\"good\">bit-exact</td>",
                                    "<td>bvh bvh2</td>", "of 2 rows has the right answer"})
         EXPECT_TRUE(contains(browsed.document, part)) << part << "\n" << browsed.console;
-    EXPECT_TRUE(contains(browsed.document, "%22samples_s%22")) << "the result to save";
 }
 
 TEST_F(PageInChromium, names_the_first_ray_that_is_wrong)
@@ -97,7 +108,7 @@ TEST_F(PageInChromium, names_the_first_ray_that_is_wrong)
     std::size_t count = 0;
     for (std::size_t ray = 0; ray < right.size(); ++ray)
         count += right[ray] == wrong[ray] ? 0 : 1;
-    const Browsed browsed = run({tets.page});
+    const Browsed browsed = run(tets);
     const std::string pixel = fmt::format("{},{}", first % 24, first / 24);
     for (const std::string& part : {std::string("data-verdict=\"failed\""), fmt::format("{} rays wrong</td>", count),
                                     fmt::format("cdt project half32, cubes, view 7: pixel {} is wrong", pixel),
@@ -109,7 +120,7 @@ TEST_F(PageInChromium, finds_words_outside_of_the_output)
 {
     PageCase tets(half32, "cdt project half32");
     ++tets.page.kernels.front().views.front().launch.width; // rows of the output are longer than there is space for
-    const Browsed browsed = run({tets.page});
+    const Browsed browsed = run(tets);
     EXPECT_TRUE(contains(browsed.document, "writes outside its output</td>")) << browsed.document;
     EXPECT_TRUE(contains(browsed.document, "data-verdict=\"failed\""));
 }
@@ -117,7 +128,7 @@ TEST_F(PageInChromium, finds_words_outside_of_the_output)
 TEST_F(PageInChromium, says_what_to_do_without_webgpu)
 {
     PageCase tets(half32, "cdt project half32");
-    const Browsed browsed = run({tets.page}, "--disable-features=WebGPU,WebGPUService");
+    const Browsed browsed = run(tets, "--disable-features=WebGPU,WebGPUService");
     EXPECT_TRUE(contains(browsed.document, "data-verdict=\"error\"")) << browsed.document;
     EXPECT_TRUE(contains(browsed.document, "Stopped by an error: ")) << browsed.document;
 }
@@ -125,7 +136,7 @@ TEST_F(PageInChromium, says_what_to_do_without_webgpu)
 TEST(BrowserPage, has_each_kernel_of_ours_and_no_markup_from_its_data)
 {
     PageCase tets(half32, "</script><b>");
-    const std::string page = browser_page({tets.page});
+    const std::string page = browser_page({tets.page}, tets.result());
     EXPECT_FALSE(contains(page, "</script><b>"));
     EXPECT_TRUE(contains(page, "\\u003c/script>\\u003cb>"));
     EXPECT_FALSE(contains(page, "@DATA@"));
@@ -140,6 +151,110 @@ TEST(BrowserPage, has_each_kernel_of_ours_and_no_markup_from_its_data)
 }
 
 using PageCommand = ProgramTest;
+
+/// A page of the program in Chromium.
+class SavedResult : public ProgramTest {
+protected:
+    void SetUp() override
+    {
+        if (find_chromium().empty())
+            GTEST_SKIP() << "no Chromium (Debian's package chromium-headless-shell): the page was opened by nobody";
+    }
+    /// Opens the page that `tetrace page` writes, and saves its result. change: of the page's text.
+    void save(const std::string& arguments, const char* name, const std::function<void(std::string&)>& change = {})
+    {
+        const Ended ended = run("page " + arguments + " --out page.html");
+        ASSERT_EQ(ended.code, 0) << ended.errors;
+        std::string page = file("page.html");
+        if (change) change(page);
+        const Browsed browsed = browse(folder_.path(), page, "?start&seconds=0", with_webgpu);
+        const std::string_view before = "href=\"data:application/json,";
+        const std::size_t begin = browsed.document.find(before);
+        ASSERT_NE(begin, std::string::npos) << browsed.document << browsed.console;
+        const std::size_t first = begin + before.size();
+        write_file(folder_ / name, decoded(browsed.document.substr(first, browsed.document.find('"', first) - first)));
+    }
+
+private:
+    /// Text of an address: %20 is a space.
+    static std::string decoded(const std::string& text)
+    {
+        std::string plain;
+        for (std::size_t i = 0; i < text.size(); ++i)
+            if (text[i] == '%') {
+                plain += static_cast<char>(std::stoi(text.substr(i + 1, 2), nullptr, 16));
+                i += 2;
+            } else
+                plain += text[i];
+        return plain;
+    }
+};
+
+TEST_F(SavedResult, is_shown_and_has_the_answers_of_the_same_rows_of_openmp)
+{
+    const std::string rows = "--scene cubes --layout tet80,bvh2 --rays primary,random --size 24 --views 1,3 ";
+    save(rows, "page.json");
+    const Ended shown = run("show page.json");
+    EXPECT_EQ(shown.code, 0) << shown.errors;
+    for (const char* const part : {"cdt maria tet80, random  webgpu", "bvh bvh2 ", "dawn-swiftshader", "steps per ray",
+                                   "all with exact arithmetic"})
+        EXPECT_TRUE(contains(shown.out, part)) << part << shown.out;
+    ASSERT_EQ(run("bench --backend openmp --schedule tiles --samples 5 --sample-time 0 --out here.json " + rows).code,
+              0);
+    const Ended compared = run("compare here.json page.json");
+    EXPECT_EQ(compared.code, 0) << compared.errors;
+    EXPECT_TRUE(contains(compared.out, "4 of another API with the SAME ANSWERS")) << compared.out;
+    EXPECT_EQ(run("report page.json --out report.html").code, 0);
+}
+
+TEST_F(SavedResult, has_no_rate_of_rows_that_are_wrong)
+{
+    // The right answers of the first view are those of the second.
+    save("--layout tet80 --size 24 --views 1,3", "page.json", [](std::string& page) {
+        const std::size_t first = page.find("\"hash\":["), second = page.find("\"hash\":[", first + 1);
+        const auto hash_at = [&](std::size_t at) { return page.substr(at, page.find(']', at) - at); };
+        page.replace(first, hash_at(first).size(), hash_at(second));
+    });
+    const Ended shown = run("show page.json");
+    EXPECT_TRUE(contains(shown.out, "wrong: 1 ray wrong: not the answers of openmp")) << shown.out << shown.errors;
+    EXPECT_FALSE(contains(file("page.json"), "mrays_per_s"));
+}
+
+TEST_F(SavedResult, has_given_rays_of_every_task_that_crosses_the_domain)
+{
+    save("--layout tet80 --task segments,absorb --rays diffuse --size 24 --views 1", "page.json");
+    const Ended shown = run("show page.json");
+    EXPECT_TRUE(contains(shown.out, "absorb maria tet80, diffuse")) << shown.out << shown.errors;
+    EXPECT_FALSE(contains(shown.out, "wrong:")) << shown.out;
+}
+
+TEST_F(PageCommand, leaves_out_the_tets_that_no_ray_meets)
+{
+    const auto length_of = [&](const std::string& arguments) {
+        EXPECT_EQ(run("page --layout half32 " + arguments + " --out page.html").code, 0);
+        return file("page.html").size();
+    };
+    EXPECT_GT(length_of("--size 64 --views 0,1,2,3"), length_of("--size 1 --views 0") + 100'000);
+}
+
+TEST_F(PageCommand, refuses_tasks_that_it_has_no_kernel_of)
+{
+    const Ended ended = run("page --layout tet64 --task tally --rays random");
+    EXPECT_EQ(ended.code, 2);
+    EXPECT_TRUE(contains(ended.errors, "a page has no kernel of tally/project/tet64")) << ended.errors;
+}
+
+TEST_F(PageCommand, has_its_kernels_dumped)
+{
+    EXPECT_EQ(run("dump --backend webgpu --layout tet64 --out kernels").code, 0);
+    EXPECT_TRUE(contains(file("kernels/project_tet64_rays.wgsl"), "@compute @workgroup_size(8, tile_height)"));
+    const Ended ended = run("dump --backend webgpu --layout embree --out kernels");
+    EXPECT_EQ(ended.code, 2);
+    EXPECT_TRUE(contains(ended.errors, "a page has no kernel of cdt/single/embree") ||
+                contains(ended.errors, "a page has no kernel of bvh/single/embree"))
+        << ended.errors;
+    EXPECT_EQ(run("bench --backend webgpu").code, 2);
+}
 
 TEST_F(PageCommand, writes_a_row_for_each_layout)
 {
