@@ -1,5 +1,8 @@
 // The page of `tetrace page` in Chromium, whose GPU is SwiftShader, which emulates one.
 #include "bench/browser/browser_page.h"
+#include "bench/expectations/expectation_files.h"
+#include "bench/expectations/judgement.h"
+#include "bench/show/recorded_rows.h"
 #include "tests/support/bvh_scene.h"
 #include "tests/support/chromium.h"
 #include "tests/support/given_scene.h"
@@ -199,6 +202,12 @@ TEST_F(SavedResult, is_shown_and_has_the_answers_of_the_same_rows_of_openmp)
     for (const char* const part : {"cdt maria tet80, random  webgpu", "bvh bvh2 ", "dawn-swiftshader", "steps per ray",
                                    "all with exact arithmetic"})
         EXPECT_TRUE(contains(shown.out, part)) << part << shown.out;
+    const Expectations expected = read_expectations({TETRACE_EXPECTED_FOLDER});
+    const CheckJudgement judgement = judge_rows(read_rows(read_result(folder_.path() / "page.json")), &expected, false);
+    ASSERT_EQ(judgement.devices.size(), 1u);
+    EXPECT_TRUE(judgement.devices.front().is_mentioned) << judgement.devices.front().implementation;
+    EXPECT_TRUE(judgement.devices.front().has_self_test);
+    EXPECT_TRUE(judgement.deviations.empty()) << judgement.deviations.front().name;
     ASSERT_EQ(run("bench --backend openmp --schedule tiles --samples 5 --sample-time 0 --out here.json " + rows).code,
               0);
     const Ended compared = run("compare here.json page.json");
