@@ -58,6 +58,7 @@ foreach(row IN LISTS rows)
   string(REGEX MATCH "^([A-Z_]*DEFECT).([a-z0-9_]+)" ignored ${row})
   list(APPEND TETRACE_DEFECTS ${CMAKE_MATCH_2})
   string(REPLACE LANE_DEFECT "LANES;-DGROUP_DEFECT" option ${CMAKE_MATCH_1})
+  string(REPLACE FAR_DEFECT "LARGE;-DGROUP_DEFECT" option "${option}")
   set(TETRACE_DEFECT_OPTIONS_${CMAKE_MATCH_2} -D${option}=${CMAKE_MATCH_2})
 endforeach()
 

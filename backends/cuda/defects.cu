@@ -41,6 +41,10 @@ KERNEL_FN uint own_lane()
 #define from_first(here, value) __shfl_sync(here, value, static_cast<int>(31u - highest_bit((here) & (0u - (here)))))
 #include "kernels/defects/lane_stressors.h"
 
+#define FAR_FN(name) KERNEL_FN void name(uint* results, uint* large, uint item_count)
+#define FAR(index) large[index]
+#include "kernels/defects/far_stressors.h"
+
 #define DEFECT(name)                                                                                                   \
     extern "C" __global__ void run_##name(const uint* words, uint* results, uint count)                                \
     {                                                                                                                  \
@@ -55,4 +59,9 @@ KERNEL_FN uint own_lane()
         name(words, results, local_words, count);                                                                      \
     }
 #define LANE_DEFECT GROUP_DEFECT
+#define FAR_DEFECT(name)                                                                                               \
+    extern "C" __global__ void run_##name(const uint*, uint* results, uint count, uint* large)                         \
+    {                                                                                                                  \
+        name(results, large, count);                                                                                   \
+    }
 #include "kernels/defects/defect_list.inc"

@@ -111,15 +111,18 @@ ProgramId probe_program(MathMode math)
     return {"probe", math};
 }
 
-/// Runs a kernel that reads an input and changes the results. what: "the self-test", in messages.
+/// Runs a kernel that reads an input and changes the results. what: "the self-test", in messages. large_bytes: of a
+/// buffer that only the kernel sees.
 void run_on_words(OpenDevice& device, FunctionHandle kernel, std::span<const std::byte> input, std::uint32_t items,
-                  unsigned block_threads, std::vector<std::uint32_t>& results, const std::string& what)
+                  unsigned block_threads, std::vector<std::uint32_t>& results, const std::string& what,
+                  std::uint64_t large_bytes = 0)
 {
     const Memory read(device.context, input, ("the input of " + what).c_str(), device.stream.get());
     const Memory written(device.context, std::as_bytes(std::span(results)), ("the results of " + what).c_str(),
                          device.stream.get());
-    Address from = read.address(), to = written.address();
-    void* parameters[] = {&from, &to, &items};
+    const Memory large(device.context, large_bytes, ("the large buffer of " + what).c_str());
+    Address from = read.address(), to = written.address(), far = large.address();
+    void* parameters[] = {&from, &to, &items, &far}; // a kernel without a large buffer has three
     device.launch(kernel, (items + block_threads - 1) / block_threads, block_threads, parameters);
     device.context.check(device.driver().copy_to_host(results.data(), to, written.bytes(), device.stream.get()),
                          ("copying the results of " + what + " to the host").c_str());
@@ -183,12 +186,16 @@ std::vector<std::uint32_t> DriverBackend::run_defect(std::size_t device, std::st
                                                      const DefectLaunch& launch)
 {
     const Found& here = require(device);
+    const Defect* const defect = find_defect(name);
+    if (defect != nullptr && defect->need == DefectNeed::large_buffer)
+        require_large_buffer(*defect, here.devices[device]);
     OpenDevice opened(here.driver.driver, ordinal_of(here.driver.driver, device));
     const LoadedProgram program = load_program(opened.context, opened.capability, here.programs, {"defects"}, {});
     const auto words = defect_words(launch);
     std::vector<std::uint32_t> results(output_words(name, launch));
     run_on_words(opened, program.module.function("run_" + std::string(name)), std::as_bytes(std::span(words)),
-                 launch.items, launch.group_items, results, std::string(name));
+                 launch.items, launch.group_items, results, std::string(name),
+                 defect == nullptr ? 0 : defect->large_bytes());
     return results;
 }
 

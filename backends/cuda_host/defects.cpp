@@ -40,6 +40,7 @@ namespace tetrace::cuda_host {
         if (threadIdx.x == 0u) call(run_##name, arguments);                                                            \
     }
 #define LANE_DEFECT GROUP_DEFECT
+#define FAR_DEFECT GROUP_DEFECT
 #include "kernels/defects/defect_list.inc"
 
 } // namespace tetrace::cuda_host

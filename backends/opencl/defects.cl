@@ -1,5 +1,5 @@
 // A reduced kernel as an OpenCL program. From outside: DEFECT, its name, or GROUP_DEFECT, that of a kernel whose items
-// share memory; LANES if it has subgroups.
+// share memory; LANES if it has subgroups, LARGE if it has a large buffer.
 #include "kernels/language/dialect_opencl.h"
 
 #define DEFECT_WORDS __global const uint *restrict words,
@@ -38,12 +38,23 @@
 #define from_first(here, value) sub_group_broadcast_first(value)
 #include "kernels/defects/lane_stressors.h"
 #endif
+#ifdef LARGE
+#define FAR_FN(name) KERNEL_FN void name(__global uint* results, __global uint* large, uint item_count)
+#define FAR(index) large[index]
+#include "kernels/defects/far_stressors.h"
+
+__kernel void run_defect(__global const uint* restrict words, __global uint* results, uint count, __global uint* large)
+{
+    GROUP_DEFECT(results, large, count);
+}
+#else
 
 __kernel void run_defect(__global const uint* restrict words, __global uint* results, uint count)
 {
     __local uint local_words[LOCAL_WORDS];
     GROUP_DEFECT(words, results, local_words, count);
 }
+#endif
 #else
 #include "kernels/defects/defects.h"
 

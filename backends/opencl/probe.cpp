@@ -32,8 +32,11 @@ ProgramId defect_program(std::string_view name)
     const bool shares = defect != nullptr && defect->expected_output != nullptr;
     ProgramId id{.source = "defects", .defines = (shares ? "-DGROUP_DEFECT=" : "-DDEFECT=") + std::string(name)};
     if (!shares || defect->need == DefectNeed::none) return id;
-    id.standard = "CL3.0";
     if (defect->need == DefectNeed::ballots) id.defines += " -DLANES";
+    if (defect->need == DefectNeed::large_buffer)
+        id.defines += " -DLARGE";
+    else
+        id.standard = "CL3.0";
     return id;
 }
 
@@ -48,6 +51,7 @@ void require_for_defect(const FoundDevice& device, std::string_view name)
         throw Error(ErrorKind::unsupported, "it lacks cl_khr_subgroup_ballot");
     if (defect->need == DefectNeed::fences && !device.has_fences)
         throw Error(ErrorKind::unsupported, "its OpenCL C 3.0 lacks fences between groups");
+    if (defect->need == DefectNeed::large_buffer) require_large_buffer(*defect, device.facts);
 }
 
 Program defect_on(Context& context, std::string_view name, const ProgramCache& cache)
@@ -69,7 +73,9 @@ std::vector<std::uint32_t> DefectProgram::run(const DefectLaunch& launch) const
     const auto words = defect_words(launch);
     const std::size_t read_bytes = words.size() * sizeof(words[0]), written_bytes = results.size() * sizeof(results[0]);
     Context& context = *context_;
-    context.run("running " + name_, read_bytes + written_bytes, [&] {
+    const Defect* const defect = find_defect(name_);
+    const std::uint64_t large_bytes = defect == nullptr ? 0 : defect->large_bytes();
+    context.run("running " + name_, read_bytes + written_bytes + large_bytes, [&] {
         const cl::CommandQueue queue = context.make_queue();
         const cl::Buffer from(context.handle(), CL_MEM_READ_ONLY, read_bytes);
         const cl::Buffer to(context.handle(), CL_MEM_READ_WRITE, written_bytes);
@@ -79,6 +85,9 @@ std::vector<std::uint32_t> DefectProgram::run(const DefectLaunch& launch) const
         kernel.setArg(0, from);
         kernel.setArg(1, to);
         kernel.setArg(2, launch.items);
+        const cl::Buffer large =
+            large_bytes == 0 ? cl::Buffer() : cl::Buffer(context.handle(), CL_MEM_READ_WRITE, large_bytes);
+        if (large_bytes != 0) kernel.setArg(3, large);
         const cl::NDRange group(launch.group_items), all(launch.groups() * launch.group_items);
         queue.enqueueNDRangeKernel(kernel, cl::NullRange, all, group);
         queue.enqueueReadBuffer(to, CL_TRUE, 0, written_bytes, results.data());

@@ -111,6 +111,11 @@ int main(int argc, char** argv)
         check(code, inputs[i].file);
         check(clSetKernelArg(kernel, inputs[i].argument, sizeof(memory), &memory), inputs[i].file);
     }
+#ifdef LARGE_BYTES /* a buffer that only the kernel sees */
+    cl_mem large = clCreateBuffer(context, CL_MEM_READ_WRITE, LARGE_BYTES, NULL, &code);
+    check(code, "the large buffer");
+    check(clSetKernelArg(kernel, 3, sizeof(large), &large), "the large buffer");
+#endif
     static cl_uint found[OUTPUT_WORDS];
     for (size_t i = 0; i < OUTPUT_WORDS; ++i)
         found[i] = OUTPUT_BEFORE;

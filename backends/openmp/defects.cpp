@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/device/backend.h"
+#include "core/device/host.h"
 #include "kernels/layouts/defect_words.h"
 
 #include <array>
@@ -10,6 +11,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <thread>
 
@@ -26,9 +28,23 @@ namespace {
 #include "kernels/defects/group_stressors.h"
 
 #include "kernels/defects/lane_stressors.h"
+
+#include "kernels/defects/far_stressors.h"
 } // namespace
 
 namespace tetrace::openmp {
+
+namespace {
+
+/// Nothing is set: only what the kernel writes takes memory.
+std::unique_ptr<std::uint32_t[]> large_buffer(std::string_view name)
+{
+    const Defect& defect = *find_defect(name);
+    require_large_buffer(defect, host_device());
+    return std::make_unique_for_overwrite<std::uint32_t[]>(defect.large_words);
+}
+
+} // namespace
 
 std::vector<std::uint32_t> words_of_defect(std::string_view name, const DefectLaunch& launch)
 {
@@ -50,6 +66,13 @@ std::vector<std::uint32_t> words_of_defect(std::string_view name, const DefectLa
         return results;                                                                                                \
     }
 #define LANE_DEFECT GROUP_DEFECT
+#define FAR_DEFECT(kernel)                                                                                             \
+    if (name == #kernel) {                                                                                             \
+        const auto large = large_buffer(name);                                                                         \
+        for (std::uint32_t group = 0; group < launch.groups(); ++group)                                                \
+            kernel(results.data(), large.get(), launch.items, group, launch.group_items);                              \
+        return results;                                                                                                \
+    }
 #include "kernels/defects/defect_list.inc"
     throw Error(ErrorKind::internal, "openmp lacks the reduced kernel '" + std::string(name) + "'");
 }

@@ -1,6 +1,6 @@
 #version 450
 // A reduced kernel as a compute shader. DEFECT is its name, or GROUP_DEFECT, that of a kernel whose items share memory;
-// LANES if it has subgroups. Compiled by glslangValidator -V --target-env vulkan1.1 -DDEFECT=<name>.
+// LANES if it has subgroups, LARGE if it has a large buffer. Compiled by glslangValidator -V --target-env vulkan1.1 -DDEFECT=<name>.
 #ifdef LANES
 #extension GL_KHR_shader_subgroup_ballot : require
 #endif
@@ -48,6 +48,15 @@ shared uint local_words[LOCAL_WORDS];
 #define lane_rank(set) subgroupBallotExclusiveBitCount(set)
 #define from_first(here, value) subgroupBroadcastFirst(value)
 #include "kernels/defects/lane_stressors.h"
+#endif
+#ifdef LARGE
+layout(std430, set = 0, binding = 2) coherent buffer Large
+{
+    uint large[];
+};
+#define FAR_FN(name) void name()
+#define FAR(index) large[index]
+#include "kernels/defects/far_stressors.h"
 #endif
 
 void main()

@@ -116,8 +116,11 @@ void describe(const vk::raii::PhysicalDevice& device, FoundDevice& found)
     if (has_extension(extensions, VK_KHR_DRIVER_PROPERTIES_EXTENSION_NAME)) {
         const auto driver = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>()
                                 .get<vk::PhysicalDeviceDriverProperties>();
-        found.facts.driver = text_of(driver.driverName) + " " + text_of(driver.driverInfo);
-        found.facts.implementation = implementation_of(text_of(driver.driverName), text_of(driver.driverInfo));
+        const std::string name = text_of(driver.driverName);
+        std::string info = text_of(driver.driverInfo);
+        if (info.empty()) info = version_text(device.getProperties().driverVersion); // SwiftShader
+        found.facts.driver = name + " " + info;
+        found.facts.implementation = implementation_of(name, info);
         found.facts.max_steps = max_steps_of(found.facts.implementation);
     }
     if (has_extension(extensions, VK_EXT_PCI_BUS_INFO_EXTENSION_NAME))
@@ -186,6 +189,7 @@ bool is_listed(const std::vector<FoundDevice>& found, const FoundDevice& device)
 std::string implementation_of(std::string_view driver_name, std::string_view driver_info)
 {
     if (driver_name == "llvmpipe") return implementation_name("lavapipe", driver_info);
+    if (driver_name == "SwiftShader driver") return implementation_name("swiftshader", driver_info);
     return implementation_name(driver_name == "NVIDIA" ? "nvidia-vulkan" : driver_name, driver_info);
 }
 

@@ -86,6 +86,8 @@ LaunchCase defect_case(std::string_view name, const DefectLaunch& launch)
     made.lines.push_back("PUSHED 0");
     const auto words = defect_words(launch);
     made.inputs = {case_input("buffer, 0", "words", "what the kernel reads", std::as_bytes(std::span(words)))};
+    if (const Defect* const defect = find_defect(name); defect != nullptr && defect->large_words != 0)
+        made.lines.push_back("LARGE_BYTES " + std::to_string(defect->large_bytes()) + "u");
     made.output = 1;
     return made;
 }

@@ -56,8 +56,10 @@ namespace {
 void require_for_defect(const FoundDevice& device, std::string_view name)
 {
     const Defect* const defect = find_defect(name);
-    if (defect != nullptr && defect->need == DefectNeed::ballots && !device.has_ballots)
+    if (defect == nullptr) return;
+    if (defect->need == DefectNeed::ballots && !device.has_ballots)
         throw Error(ErrorKind::unsupported, "its subgroups have no ballots in compute shaders");
+    if (defect->need == DefectNeed::large_buffer) require_large_buffer(*defect, device.facts);
 }
 
 } // namespace
@@ -69,9 +71,12 @@ std::vector<std::uint32_t> run_defect(const Context& context, std::string_view n
     const auto words = defect_words(launch);
     const std::span<std::byte> result_bytes = std::as_writable_bytes(std::span(results));
     const auto word_bytes = std::as_bytes(std::span(words));
-    context.run("running " + std::string(name), word_bytes.size() + result_bytes.size(), [&] {
+    const Defect* const defect = find_defect(name);
+    const std::uint64_t large_bytes = defect == nullptr ? 0 : defect->large_bytes();
+    const bool is_large = large_bytes != 0;
+    context.run("running " + std::string(name), word_bytes.size() + result_bytes.size() + large_bytes, [&] {
         const ProgramId id{.name = std::string(name),
-                           .bindings = {0, 1},
+                           .bindings = is_large ? std::vector{0u, 1u, 2u} : std::vector{0u, 1u},
                            .tile_height = launch.group_items, // the constant that is the size of groups
                            .kernels = vulkan_defects::embedded_kernels()};
         const Program program(context, id, ProgramCache({}));
@@ -79,10 +84,12 @@ std::vector<std::uint32_t> run_defect(const Context& context, std::string_view n
         const Buffer to(context, result_bytes.size(), BufferUse::device);
         const Buffer staging =
             needs_staging(to) ? Buffer(context, result_bytes.size(), BufferUse::read_back) : Buffer();
+        const Buffer large = is_large ? Buffer(context, large_bytes, BufferUse::device) : Buffer();
         upload(context, from, word_bytes);
         upload(context, to, result_bytes);
         program.bind(context, 0, from);
         program.bind(context, 1, to);
+        if (is_large) program.bind(context, 2, large);
         const vk::raii::CommandBuffer commands = context.make_commands();
         commands.begin({});
         program.record(commands);

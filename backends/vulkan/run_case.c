@@ -119,15 +119,19 @@ static void* bind_buffer(enum kind kind, uint32_t binding, size_t bytes)
 /* Makes the set, and the layout of a pipeline with it. */
 static VkPipelineLayout make_layout(void)
 {
-    VkDescriptorSetLayoutBinding bindings[INPUT_COUNT + 1] = {
+    VkDescriptorSetLayoutBinding bindings[INPUT_COUNT + 2] = {
         {OUTPUT, type_of(buffer), 1, VK_SHADER_STAGE_COMPUTE_BIT, NULL}};
     VkDescriptorSetLayoutCreateInfo info = {VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO, NULL, 0, 1, bindings};
     for (size_t i = 0; i < INPUT_COUNT; ++i)
         bindings[info.bindingCount++] = (VkDescriptorSetLayoutBinding){inputs[i].binding, type_of(inputs[i].kind), 1,
                                                                        VK_SHADER_STAGE_COMPUTE_BIT, NULL};
+#ifdef LARGE_BYTES /* a buffer that only the program sees */
+    bindings[info.bindingCount++] =
+        (VkDescriptorSetLayoutBinding){2, type_of(buffer), 1, VK_SHADER_STAGE_COMPUTE_BIT, NULL};
+#endif
     VkDescriptorSetLayout set_layout;
     check(vkCreateDescriptorSetLayout(device, &info, NULL, &set_layout), "vkCreateDescriptorSetLayout");
-    const VkDescriptorPoolSize sizes[] = {{type_of(buffer), INPUT_COUNT + 1}, {type_of(words), INPUT_COUNT}};
+    const VkDescriptorPoolSize sizes[] = {{type_of(buffer), INPUT_COUNT + 2}, {type_of(words), INPUT_COUNT}};
     VkDescriptorPoolCreateInfo pool_info = {VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, NULL, 0, 1, 2, sizes};
     VkDescriptorPool pool;
     check(vkCreateDescriptorPool(device, &pool_info, NULL, &pool), "vkCreateDescriptorPool");
@@ -224,6 +228,9 @@ int main(int argc, char** argv)
         const void* contents = read_file(inputs[i].file, &bytes);
         memcpy(bind_buffer(inputs[i].kind, inputs[i].binding, bytes), contents, bytes);
     }
+#ifdef LARGE_BYTES
+    bind_buffer(buffer, 2, LARGE_BYTES);
+#endif
     uint32_t* output = bind_buffer(buffer, OUTPUT, 4 * OUTPUT_WORDS);
     for (size_t i = 0; i < OUTPUT_WORDS; ++i)
         output[i] = OUTPUT_BEFORE;

@@ -1,12 +1,17 @@
 #include "core/device/defects.h"
 
+#include "core/base/control_groups.h"
+#include "core/base/error.h"
+#include "core/device/backend.h"
 #include "core/device/stressors.h"
 #include "kernels/layouts/defect_words.h"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <limits>
 #include <numeric>
+#include <string>
 #include <system_error>
 
 namespace tetrace {
@@ -120,6 +125,22 @@ std::optional<ChosenDefect> chosen_defect(std::string_view text)
                            launch.group_items <= largest.group_items && launch.groups() <= max_groups;
     if (group.ec != std::errc() || group.ptr != end || !is_within) return std::nullopt;
     return ChosenDefect{defect, launch};
+}
+
+void require_large_buffer(const Defect& defect, const Device& device)
+{
+    const std::uint64_t needed = defect.large_bytes();
+    const auto require = [&](const std::string& what, std::uint64_t bytes) {
+        if (bytes < needed)
+            throw Error(ErrorKind::unsupported, what + " " + std::to_string(bytes >> 20) +
+                                                    " MiB, and the kernel needs " + std::to_string(needed >> 20) +
+                                                    " MiB");
+    };
+    if (device.max_buffer_bytes != 0) require("it admits buffers of", device.max_buffer_bytes);
+    if (device.kind == DeviceKind::gpu)
+        require("half of its memory is", device.memory_bytes / 2);
+    else
+        require("half of the free memory is", available_memory_bytes() / 2);
 }
 
 const Defect* find_defect(std::string_view name)

@@ -16,8 +16,10 @@ struct DefectLaunch {
     [[nodiscard]] std::uint32_t groups() const { return (items + group_items - 1) / group_items; }
 };
 
-/// What a stressor needs that not every device has: ballots of subgroups; a fence between groups.
-enum class DefectNeed { none, ballots, fences };
+struct Device; // core/device/backend.h
+
+/// What a stressor needs that not every device has: ballots of subgroups; a fence between groups; a large buffer.
+enum class DefectNeed { none, ballots, fences, large_buffer };
 
 /// A defect of a driver's compiler, reduced to a small kernel (kernels/defects/defects.h, in every language), or a
 /// stressor (kernels/defects/stressors.h). Each item returns a word; of some stressors, all groups together return
@@ -34,6 +36,9 @@ struct Defect {
     std::vector<std::uint32_t> (*expected_output)(const DefectLaunch& launch) = nullptr;
     std::uint32_t shared_words = 0; ///< of all groups, in the output after those of the items
     DefectNeed need = DefectNeed::none;
+    std::uint32_t large_words = 0; ///< of a buffer that only the kernel sees (kernels/defects/far_stressors.h); else 0
+
+    [[nodiscard]] std::uint64_t large_bytes() const { return std::uint64_t{large_words} * sizeof(std::uint32_t); }
 
     /// Those to be run: one group of 16 for a reduced kernel; for a stressor 1 to 10^6 items, in groups of several
     /// sizes.
@@ -53,6 +58,10 @@ struct ChosenDefect {
 /// As `dump --defect` names them: "zoo_of_exits" with its case_launch(), or "zoo_of_exits:4096:32", items and those of
 /// a group. Empty if there is no such kernel, or if its launch is larger than any of launches().
 [[nodiscard]] std::optional<ChosenDefect> chosen_defect(std::string_view text);
+
+/// Throws Error{unsupported} if the device's largest buffer, or half of the memory that it may have, is less than the
+/// kernel's large buffer.
+void require_large_buffer(const Defect& defect, const Device& device);
 
 /// Null if there is none of that name.
 [[nodiscard]] const Defect* find_defect(std::string_view name);

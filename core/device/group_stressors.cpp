@@ -1,4 +1,5 @@
 #include "core/device/stressors.h"
+#include "kernels/layouts/defect_words.h"
 
 #include <algorithm>
 #include <array>
@@ -114,6 +115,36 @@ Output jobs_of_lanes(const DefectLaunch& launch)
     return words;
 }
 
+std::uint32_t far_value(std::uint32_t side, std::uint32_t item)
+{
+    return spread(3 * item + side + 1);
+}
+
+/// The same for every boundary.
+Output words_past(const DefectLaunch& launch)
+{
+    Output words(launch.items);
+    for (std::uint32_t item = 0; item < launch.items; ++item) {
+        const std::uint32_t local = item % launch.group_items;
+        const std::uint32_t next = item - local + (local + 1) % launch.group_items;
+        words[item] = (far_value(0, next) * 31 + far_value(1, next)) * 31 + far_value(2, next);
+    }
+    return words;
+}
+
+/// bytes: the boundary.
+constexpr Defect words_past_boundary(std::string_view name, std::string_view what, std::uint64_t bytes)
+{
+    return {.name = name,
+            .what = what,
+            .known = "wgpu#2361, wgpu#10305",
+            .expected = nullptr,
+            .is_stressor = true,
+            .expected_output = words_past,
+            .need = DefectNeed::large_buffer,
+            .large_words = static_cast<std::uint32_t>(bytes / sizeof(std::uint32_t)) + FAR_ROOM};
+}
+
 } // namespace
 
 std::span<const Defect> group_stressors()
@@ -156,6 +187,10 @@ std::span<const Defect> group_stressors()
          .expected_output = jobs_of_lanes,
          .shared_words = 2,
          .need = DefectNeed::ballots},
+        words_past_boundary("words_past_64_mib", "words of a buffer before and after byte 2^26, word 2^24",
+                            std::uint64_t{1} << 26),
+        words_past_boundary("words_past_2_gib", "words of a buffer before and after byte 2^31", std::uint64_t{1} << 31),
+        words_past_boundary("words_past_4_gib", "words of a buffer before and after byte 2^32", std::uint64_t{1} << 32),
     };
     return stressors;
 }

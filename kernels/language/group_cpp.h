@@ -1,9 +1,10 @@
-// What kernels/defects/group_stressors.h and lane_stressors.h need, as host C++: a group's items take turns between
-// barriers, and a subgroup is one item. Include it after dialect_cpp.h. Defined by the entry file: LOCAL_WORDS, how
-// many words of memory a group has. Include <atomic> and <thread> before it.
+// What kernels/defects/group_stressors.h, lane_stressors.h and far_stressors.h need, as host C++: a group's items take
+// turns between barriers, and a subgroup is one item. Include it after dialect_cpp.h. Defined by the entry file:
+// LOCAL_WORDS, how many words of memory a group has. Include <atomic> and <thread> before it.
 #define GROUP_FN(name)                                                                                                 \
     KERNEL_FN void name([[maybe_unused]] const uint* words, uint* results, [[maybe_unused]] uint* local_words,         \
                         [[maybe_unused]] uint item_count, [[maybe_unused]] uint group, uint group_size)
+#define FAR_FN(name) KERNEL_FN void name(uint* results, uint* large, uint item_count, uint group, uint group_size)
 #define EACH_ITEM for (uint local = 0u; local < group_size; local++)
 #define BARRIER
 #define FENCE std::atomic_thread_fence(std::memory_order_seq_cst);
@@ -14,6 +15,7 @@
 #define ITEM_COUNT item_count
 #define RESULT(index) results[index]
 #define ADD(index, added) std::atomic_ref(results[index]).fetch_add(added)
+#define FAR(index) large[index]
 #define LOCAL_WORD(index) local_words[index]
 #define LOCAL_ADD(index, added) std::atomic_ref(local_words[index]).fetch_add(added)
 

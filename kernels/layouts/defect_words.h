@@ -4,5 +4,6 @@
 
 #define DEFECT_WORD_COUNT 64u // the words 0, 1, ... that they read; the number of items follows
 #define LOCAL_WORDS 257u      // memory of a work group: a word, and two for each of 128 items
+#define FAR_ROOM 1048576u     // words of a large buffer after its boundary: one for each item of a launch
 
 #endif

@@ -119,6 +119,28 @@ TEST(Stressors, may_flush_denormals_in_arithmetic_and_not_in_copies)
     EXPECT_EQ(wrong_items(maxima, one_group, expected_words(minima, one_group)), Words{}) << "the comparison flushes";
 }
 
+TEST(Stressors, of_a_large_buffer_are_refused_where_the_device_or_its_memory_admits_less)
+{
+    const auto refusal = [](std::string_view name, std::uint64_t max_buffer_mib, std::uint64_t memory_mib) {
+        Device device;
+        device.kind = DeviceKind::gpu;
+        device.max_buffer_bytes = max_buffer_mib << 20;
+        device.memory_bytes = memory_mib << 20;
+        try {
+            require_large_buffer(*find_defect(name), device);
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::unsupported);
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_EQ(refusal("words_past_64_mib", 128, 1024), "");
+    EXPECT_EQ(refusal("words_past_2_gib", 128, 16384), "it admits buffers of 128 MiB, and the kernel needs 2052 MiB");
+    EXPECT_EQ(refusal("words_past_4_gib", 4099, 16384), "it admits buffers of 4099 MiB, and the kernel needs 4100 MiB");
+    EXPECT_EQ(refusal("words_past_4_gib", 4100, 16384), "");
+    EXPECT_EQ(refusal("words_past_4_gib", 0, 8000), "half of its memory is 4000 MiB, and the kernel needs 4100 MiB");
+}
+
 TEST(Stressors, are_wrong_if_a_compiler_makes_a_fault)
 {
     std::set<std::string_view> seen;

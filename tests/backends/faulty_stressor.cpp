@@ -4,6 +4,7 @@
 #include "core/device/defects.h"
 #include "kernels/layouts/defect_words.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <bit>
@@ -12,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <thread>
+#include <unordered_map>
 
 namespace {
 #define DEFECT_WORDS const uint *words,
@@ -20,6 +22,14 @@ namespace {
 #include "kernels/language/dialect_cpp.h"
 
 #include "kernels/language/group_cpp.h"
+
+// The words of a large buffer that are used. An index that is outside is that of its last word.
+#undef FAR_FN
+#undef FAR
+#define FAR_FN(name)                                                                                                   \
+    KERNEL_FN void name(uint* results, std::unordered_map<uint, uint>& large, uint item_count, uint group,             \
+                        uint group_size)
+#define FAR(index) large[std::min(index, 0x40000000u + FAR_ROOM - 1u)]
 
 // What a device that flushes denormals returns.
 KERNEL_FN uint flushed_bits(real value)
@@ -41,9 +51,15 @@ std::vector<std::uint32_t> FAULT(const DefectLaunch& launch)
 #define TEXT_OF(name) #name
 #define NAME_OF(name) TEXT_OF(name)
     std::vector<std::uint32_t> results(output_words(NAME_OF(GROUP_DEFECT), launch));
+#ifdef LARGE
+    std::unordered_map<uint, uint> large;
+    for (std::uint32_t group = 0; group < launch.groups(); ++group)
+        GROUP_DEFECT(results.data(), large, launch.items, group, launch.group_items);
+#else
     std::array<std::uint32_t, LOCAL_WORDS> memory;
     for (std::uint32_t group = 0; group < launch.groups(); ++group)
         GROUP_DEFECT(words.data(), results.data(), memory.data(), launch.items, group, launch.group_items);
+#endif
 #else
     std::vector<std::uint32_t> results;
     for (std::uint32_t item = 0; item < launch.items; ++item)

@@ -270,6 +270,7 @@ TEST(VulkanImplementation, is_read_from_whatever_drivers_say)
     EXPECT_EQ(implementation_of("llvmpipe", "Mesa 25.0.7-2 (LLVM 19.1.7)"), "lavapipe-25.0");
     EXPECT_EQ(implementation_of("NVIDIA", "580.65.06"), "nvidia-vulkan-580");
     EXPECT_EQ(implementation_of("radv", "Mesa 22.3.6"), "radv-22.3");
+    EXPECT_EQ(implementation_of("SwiftShader driver", "5.0.0"), "swiftshader-5.0");
     EXPECT_EQ(implementation_of("Intel open-source Mesa driver", "Mesa 23.2.1-1ubuntu3"),
               "intel-open-source-mesa-driver-23.2");
     EXPECT_EQ(implementation_of("AMD (proprietary) ", "beta"), "amd-proprietary");
