@@ -6,6 +6,7 @@ const query = new URLSearchParams(location.search);
 // What the run has found; result_of() makes a result of it.
 const found = { records: [] };
 let stopped = false;
+const MIN_SAMPLE_S = 0.05; // of all views
 
 async function unpacked(text) {
     const bytes = Uint8Array.from(atob(text), c => c.charCodeAt(0));
@@ -83,13 +84,13 @@ class Gpu {
     bindings(pipeline, entries) {
         return this.device.createBindGroup({ layout: pipeline.getBindGroupLayout(0), entries: entries.map(([binding, buffer]) => ({ binding, resource: { buffer } })) });
     }
-    // Seconds of one dispatch, by the device's clock where it has one.
-    async dispatch(pipeline, group, groups) {
+    // Seconds of a dispatch, by the device's clock if it has one, which browsers round to 100 us: so that of many passes.
+    async dispatch(pipeline, group, groups, passes = 1) {
         const begin = performance.now(), encoder = this.device.createCommandEncoder();
         const pass = encoder.beginComputePass(this.is_timed ? { timestampWrites: { querySet: this.queries, beginningOfPassWriteIndex: 0, endOfPassWriteIndex: 1 } } : {});
         pass.setPipeline(pipeline);
         pass.setBindGroup(0, group);
-        pass.dispatchWorkgroups(groups);
+        for (let i = 0; i < passes; ++i) pass.dispatchWorkgroups(groups);
         pass.end();
         if (this.is_timed) {
             encoder.resolveQuerySet(this.queries, 0, 2, this.resolved, 0);
@@ -99,13 +100,13 @@ class Gpu {
         if (!this.is_timed) {
             await this.device.queue.onSubmittedWorkDone();
             this.check();
-            return (performance.now() - begin) * 1e-3;
+            return (performance.now() - begin) * 1e-3 / passes;
         }
         await this.times.mapAsync(GPUMapMode.READ).catch(() => {});
         this.check();
         const [first, last] = new BigUint64Array(this.times.getMappedRange());
         this.times.unmap();
-        return last > first ? Number(last - first) * 1e-9 : (performance.now() - begin) * 1e-3;
+        return (last > first ? Number(last - first) * 1e-9 : (performance.now() - begin) * 1e-3) / passes;
     }
     async words(buffer, count) {
         const copy = this.device.createBuffer({ size: count * 4, usage: GPUBufferUsage.MAP_READ | GPUBufferUsage.COPY_DST });
@@ -165,15 +166,15 @@ class Session {
         }
         this.gpu.check();
     }
-    // Seconds of all launches of a view. A launch ends long before a watchdog would end it.
-    async trace(view) {
+    // Seconds of all launches of a view, each done so many times. A launch ends long before a watchdog would end it.
+    async trace(view, passes = 1) {
         const words = words_of(await unpacked(view.launch)).slice();
         let seconds = 0;
         for (let first = 0; first < view.tiles;) {
             const tiles = Math.min(this.tiles, view.tiles - first, 65535);
             words[DATA.first_tile_word] = first;
             this.gpu.device.queue.writeBuffer(this.launch, 0, words);
-            const took = await this.gpu.dispatch(this.pipeline, this.groups.get(view), tiles);
+            const took = await this.gpu.dispatch(this.pipeline, this.groups.get(view), tiles, tiles === view.tiles ? passes : 1);
             seconds += took;
             this.tiles = Math.max(64, Math.floor(tiles * 0.1 / Math.max(took, 1e-5)));
             first += tiles;
@@ -230,12 +231,13 @@ function show_row(row) {
     const samples = row.record.samples_s, median = samples.length ? quantile(samples, 0.5) : 0;
     const rate = median ? row.record.rays / median / 1e6 : 0;
     const spread = samples.length > 4 ? (quantile(samples, 0.75) - quantile(samples, 0.25)) / median : 0;
-    const cells = [row.record.kernel, row.record.scene, row.record.rays.toLocaleString("en"), row.record.conformity,
+    const share = row.record.hit_share;
+    const cells = [row.record.kernel, row.record.scene, row.record.rays.toLocaleString("en"), share === undefined ? "–" : (100 * share).toFixed(0) + " %", row.record.conformity,
         rate ? rate.toPrecision(3) : "–", spread ? (100 * spread).toFixed(1) + " %" + (spread > 0.05 ? ", noisy" : "") : "–", samples.length, row.record.compile_ms.toFixed(0)];
     row.line.replaceChildren(...cells.map((cell, i) => {
         const element = document.createElement("td");
         element.textContent = cell;
-        if (i === 3) element.className = row.record.conformity === "bit-exact" ? "good" : "bad";
+        if (i === 4) element.className = row.record.conformity === "bit-exact" ? "good" : "bad";
         return element;
     }));
     row.record.mrays_per_s = rate;
@@ -272,9 +274,12 @@ function conformity_of(record) {
 
 // records: one for each kernel, in the order of the result's rows.
 function begin_records() {
+    const rows = DATA.result.tetrace.rows;
+    let number = 0;
     found.records = DATA.scenes.flatMap(scene => scene.kernels.map(kernel => ({
+        hit_share: rows[number++].counts?.hit_share,
         kernel: kernel.name, scene: scene.name, rays: kernel.views.reduce((sum, view) => sum + view.rays, 0), wrong: 0, conformity: "",
-        samples_s: [], compile_ms: 0, first_kernel_s: 0, first_wall_s: 0, download_s: 0 })));
+        samples_s: [], passes: 1, compile_ms: 0, first_kernel_s: 0, first_wall_s: 0, download_s: 0 })));
 }
 
 async function verify_row(gpu, row) {
@@ -325,8 +330,9 @@ async function measure(rows, seconds) {
             await while_hidden();
             if (stopped) return;
             let sum = 0;
-            for (const view of row.kernel.views) sum += await row.session.trace(view);
+            for (const view of row.kernel.views) sum += await row.session.trace(view, row.record.passes);
             if (round > 0) row.record.samples_s.push(sum);
+            else row.record.passes = Math.max(1, Math.min(1000, Math.ceil(MIN_SAMPLE_S / sum)));
             show_row(row);
         }
         at("state").textContent = `measuring, ${Math.max(0, (end - performance.now()) / 1000).toFixed(0)} s left`;
@@ -375,6 +381,7 @@ function fill_row(row, record) {
         if (!samples.length) return;
         const [low, median, high] = [0.25, 0.5, 0.75].map(share => quantile(samples, share)), spread = (high - low) / median;
         Object.assign(row.times, { samples_s: samples, median_s: median, lower_quartile_s: low, upper_quartile_s: high, spread, noisy: spread > 0.05 });
+        if (record.passes > 1) row.times.passes = record.passes;
         row.rates = { mrays_per_s: record.rays / median * 1e-6 };
         return;
     }
@@ -426,7 +433,7 @@ async function run() {
             const gpu = await Gpu.open();
             found.device = device_of(gpu.adapter);
             found.clock = gpu.is_timed ? "WebGPU timestamps" : "browser clock";
-            at("device").textContent = `${found.device.name}; times by ${found.clock}`;
+            at("device").textContent = `${found.device.name}${found.device.type === "emulated" ? ", emulated by the processor" : ""}; times by ${found.clock}`;
             found.self_test = await self_test(gpu);
             at("self-test").textContent = "Self-test: " + found.self_test.text;
             const rows = [];

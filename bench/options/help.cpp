@@ -282,7 +282,8 @@ const VerbHelp verb_help[] = {
     {Verb::page, "write a page that traces in a browser, by WebGPU",
      "Writes one HTML file that traces the scenes on any GPU that a browser offers: open it, from a file or from a web "
      "server, and press Start. It compares every ray's answer with openmp's, which this verb has verified, bit for "
-     "bit, then measures for ten seconds, draws, and offers the result as JSON. It loads nothing. Each --layout is a "
+     "bit, then measures for ten seconds, draws, and offers the result as JSON, which 'show', 'report' and 'compare' "
+     "read. It loads nothing. Each --layout is a "
      "row: half32, tet64, tet80, bvh2, bvh4, cwbvh and the other layouts of tetrace's own. Default: tet64 and bvh2 on "
      "the scene cubes. docs/browser.md has more.",
      "  tetrace page\n"

@@ -444,3 +444,36 @@ TEST_F(ResultComparisons, rows_of_scenes_and_searches_of_one_result_are_compared
     EXPECT_EQ(comparison.rows[1].name(), "search/a");
     EXPECT_EQ(comparison.count(RowOutcome::compared), 2u);
 }
+
+/// The row under another API.
+Json under(const char* api, Json row)
+{
+    row["backend"] = api;
+    const std::string name = row["name"];
+    row["name"] = name.substr(0, name.find("/api:")) + "/api:" + api;
+    return row;
+}
+
+TEST_F(ResultComparisons, of_two_apis_are_of_answers_alone)
+{
+    const Json row = timed_row("cdt/a/api:openmp", 1), slower = under("webgpu", timed_row("cdt/a/api:openmp", 5));
+    const ResultComparison same = compare(result_of({row}), result_of({slower}));
+    ASSERT_EQ(same.rows.size(), 1u);
+    EXPECT_EQ(same.rows.front().verdict(), "SAME ANSWERS");
+    EXPECT_EQ(same.rows.front().note(), "openmp in A and webgpu in B, whose rates are not compared");
+    EXPECT_FALSE(same.rows.front().change);
+    EXPECT_TRUE(same.regressions(false).empty());
+    EXPECT_FALSE(same.geometric_mean());
+
+    Json other = slower;
+    other["hit_hash"] = "00000000000000fe";
+    EXPECT_TRUE(contains(error_of([&] { (void)compare(result_of({row}), result_of({other})); }),
+                         "hit hash 00000000000000ff in A and 00000000000000fe in B"));
+    // A row of an API that both have is not another API's.
+    const ResultComparison shared =
+        compare(result_of({row, under("opencl", row)}), result_of({slower, under("opencl", row)}));
+    ASSERT_EQ(shared.rows.size(), 3u);
+    EXPECT_EQ(shared.rows[0].verdict(), "MISSING");
+    EXPECT_EQ(shared.rows[1].verdict(), "SAME");
+    EXPECT_EQ(shared.rows[2].verdict(), "NEW");
+}

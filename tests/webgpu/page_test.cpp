@@ -50,7 +50,9 @@ struct PageCase {
         nlohmann::json section = {{"host", nlohmann::json::object()},
                                   {"devices", {{{"self_test", {{"exact", nlohmann::json::object()}}}}}}};
         for (std::size_t i = 0; i < page.kernels.size(); ++i)
-            section["rows"].push_back({{"device", nlohmann::json::object()}, {"self_test", nlohmann::json::object()}});
+            section["rows"].push_back({{"device", nlohmann::json::object()},
+                                       {"self_test", nlohmann::json::object()},
+                                       {"counts", {{"hit_share", 0.25}}}});
         return {{"tetrace", section}};
     }
 
@@ -94,7 +96,7 @@ TEST_F(PageInChromium, verifies_and_measures_each_row)
     const Browsed browsed = run(tets);
     EXPECT_TRUE(contains(browsed.document, "data-verdict=\"conforms\"")) << browsed.document << browsed.console;
     for (const char* const part : {"Self-test: exact",
-                                   "<td>cdt project half32</td><td>cubes</td><td>576</td>"
+                                   "<td>cdt project half32</td><td>cubes</td><td>576</td><td>25 %</td>"
                                    "<td class=\"good\">bit-exact</td>",
                                    "<td>bvh bvh2</td>", "of 2 rows has the right answer"})
         EXPECT_TRUE(contains(browsed.document, part)) << part << "\n" << browsed.console;
