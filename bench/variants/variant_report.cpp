@@ -86,8 +86,9 @@ std::string failure_text(const ResultValue& row, const ResultValue& failure)
                                    failure.at("outcome").line());
     if (const auto different = failure.find("different_rays"))
         text += fmt::format(" ({})", counted(different->count(), "ray", "rays"));
-    text += fmt::format("; of its {} are needed: {}", counted(failure.at("changes").count(), "change", "changes"),
-                        fmt::join(reduced, ", "));
+    const std::string changes = counted(failure.at("changes").count(), "change", "changes");
+    text += reduced.empty() ? fmt::format("; its {} were not reduced", changes)
+                            : fmt::format("; of its {} are needed: {}", changes, fmt::join(reduced, ", "));
     if (const std::string reason = failure.text_at("reason"); !reason.empty())
         text += "; " + printable_line(reason.substr(0, std::min<std::size_t>(reason.find('\n'), 200)));
     return text;

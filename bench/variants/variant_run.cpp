@@ -20,6 +20,9 @@ namespace tetrace {
 
 namespace {
 
+/// Of a row: failures that are reduced. Each takes tens of programs, and a defect that is met often has many causes.
+constexpr std::size_t max_causes = 3;
+
 using Indices = std::vector<std::size_t>;
 
 /// What a set of changes led to.
@@ -122,13 +125,13 @@ private:
                 failure.same_as = earlier;
                 reduced = known.changes;
             }
-        if (!failure.same_as) {
+        if (!failure.same_as && causes_.size() < max_causes) {
             reduced = reduce(changes, failure);
             causes_[number] = {seen.sight, reduced};
         }
         for (const std::size_t change : reduced)
             failure.reduced.push_back(program_->text().changes()[change].name);
-        failure.command = command_of(failure);
+        if (!reduced.empty()) failure.command = command_of(failure);
         result_.failures.push_back(std::move(failure));
     }
 

@@ -26,7 +26,7 @@ struct VariantFailure {
     std::uint32_t number = 0; ///< of the variant, from 1
     VariantSight sight = VariantSight::wrong;
     std::size_t changes = 0;                          ///< how many it has
-    std::vector<std::string> reduced;                 ///< the fewest of them that were seen to fail alike
+    std::vector<std::string> reduced;                 ///< the fewest that were seen to fail alike; empty: not reduced
     std::optional<std::uint32_t> same_as;             ///< an earlier variant, whose reduced changes it has too
     std::uint32_t tries = 0;                          ///< of the reduction
     std::uint64_t different = 0;                      ///< rays, of the view of first_different, with all its changes
