@@ -34,7 +34,7 @@ VariantProgram::Source VariantProgram::source_of(const std::string& backend, con
     const auto find = [&](const std::string& wanted) { return std::ranges::find(files, wanted, &KernelFile::name); };
     if (const auto text = find(name + ".cl"); text != files.end()) return {text->name, text->bytes, {}, {}};
     const auto text = find(name + ".comp"), program = find(spirv);
-    if (text == files.end() || program == files.end())
+    if (text == files.end() || program == files.end() || !is_portable(kernel))
         throw Error(ErrorKind::unsupported,
                     fmt::format("{} has no text of {} that is compiled here; opencl and vulkan have", backend,
                                 name_of(kernel)));
