@@ -1,6 +1,7 @@
 #include "backends/opencl/program.h"
 
 #include "backends/opencl/kernels.h"
+#include "core/base/files.h"
 #include "core/base/hash.h"
 #include "kernels/layouts/layout.h"
 
@@ -17,6 +18,14 @@ std::uint64_t key_of(const FoundDevice& device, const std::string& options, std:
     std::uint64_t key = hash_of(device.build_key);
     key = hash_of(options, key);
     return hash_of(source, key);
+}
+
+std::string text_of(const ProgramId& id)
+{
+    if (!id.file.empty()) return required_bytes(id.file);
+    const EmbeddedKernel* const source = find_kernel(embedded_kernels(), id.source);
+    if (source == nullptr) throw Error(ErrorKind::internal, "opencl lacks program '" + id.source + "'");
+    return std::string(source->text());
 }
 
 std::string build_log(const cl::BuildError& failure)
@@ -77,11 +86,10 @@ std::string build_options(const FoundDevice& device, const ProgramId& id)
 Program::Program(Context& context, const ProgramId& id, const ProgramCache& cache)
     : cache_(cache), options_(build_options(context.found(), id))
 {
-    const EmbeddedKernel* source = find_kernel(embedded_kernels(), id.source);
-    if (source == nullptr) throw Error(ErrorKind::internal, "opencl lacks program '" + id.source + "'");
-    key_ = key_of(context.found(), options_, source->text());
+    const std::string text = text_of(id);
+    key_ = key_of(context.found(), options_, text);
     is_cached_ = load(context);
-    if (!is_cached_) compile(context, id, source->text());
+    if (!is_cached_) compile(context, id, text);
 }
 
 /// Whether the cache had it and the driver still accepts it.

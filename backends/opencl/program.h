@@ -4,6 +4,7 @@
 #include "core/device/program_cache.h"
 #include "core/pack/kernel_id.h"
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -19,8 +20,9 @@ namespace tetrace::opencl {
 struct ProgramId {
     std::string source; ///< its name
     MathMode math = MathMode::exact;
-    std::string defines = {};       ///< further options: "-DGROUP_ITEMS=64"
-    std::string standard = "CL1.2"; ///< version of OpenCL C
+    std::string defines = {};        ///< further options: "-DGROUP_ITEMS=64"
+    std::string standard = "CL1.2";  ///< version of OpenCL C
+    std::filesystem::path file = {}; ///< its text, in place of the embedded one; empty: that
 };
 
 /// ProgramId::defines of a kernel. in_parts: the tets are in several buffers. starts_outside: no ray of an image starts
@@ -44,7 +46,7 @@ enum Argument : cl_uint {
 /// A program compiled for a context's device, or taken from a cache.
 class Program {
 public:
-    /// Throws Error{driver} with the compiler's messages if it fails.
+    /// Throws Error{driver} with the compiler's messages if it fails, Error{missing} if the file cannot be read.
     Program(Context& context, const ProgramId& id, const ProgramCache& cache);
 
     [[nodiscard]] const cl::Program& handle() const { return handle_; }

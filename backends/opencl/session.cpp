@@ -37,6 +37,7 @@ OpenclSession::OpenclSession(std::shared_ptr<Context> context, const KernelId& k
                              const SessionOptions& options)
     : context_(std::move(context)), kernel_id_(kernel),
       cache_(context_->found().keeps_programs ? std::filesystem::path() : options.program_cache),
+      program_file_(options.program_file),
       starts_outside_(kernel.task == Task::trace && structure_of(kernel.layout) == Structure::cdt),
       tile_height_(tile_height_of(options)), max_buffer_bytes_(max_buffer(context_->facts(), options)),
       domain_(domain_of(scene)), tet_parts_(tet_parts(scene, max_buffer_bytes_)), scene_bytes_(scene.bytes()),
@@ -77,7 +78,10 @@ void OpenclSession::compile()
     const Stopwatch watch;
     const std::string defines =
         defines_of(kernel_id_, tile_height_, tet_parts_.count > 1, starts_outside_, context_->found().stack_top);
-    const Program program(*context_, {source_name(kernel_id_), kernel_id_.math, defines}, cache_);
+    const Program program(
+        *context_,
+        {.source = source_name(kernel_id_), .math = kernel_id_.math, .defines = defines, .file = program_file_},
+        cache_);
     run("making the kernel", output_bytes(), [&] {
         kernel_ = cl::Kernel(program.handle(), "run_image");
         set_arguments();

@@ -56,6 +56,7 @@ private:
     std::shared_ptr<Context> context_;
     KernelId kernel_id_;
     ProgramCache cache_;
+    std::filesystem::path program_file_;
     bool starts_outside_; ///< the program cannot start in a tet: the registers for that would slow a GPU
     unsigned tile_height_;
     std::uint64_t max_buffer_bytes_;

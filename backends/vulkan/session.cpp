@@ -1,6 +1,7 @@
 #include "backends/vulkan/session.h"
 
 #include "backends/vulkan/kernels.h"
+#include "core/base/files.h"
 #include "core/base/stopwatch.h"
 #include "core/device/session.h"
 
@@ -20,10 +21,12 @@ void require_storage_buffers(const FoundDevice& found, const PackedScene& scene,
                                             " storage buffers, " + std::to_string(needed) + " are needed");
 }
 
-/// Whether the scene is read as texels: if the device prefers it, and its views can be that large.
-bool is_in_texels(const FoundDevice& found, const PackedScene& scene, const TetParts& parts)
+/// Whether the scene is read as texels: if the device prefers it, its views can be that large, and no other program is
+/// given.
+bool is_in_texels(const FoundDevice& found, const PackedScene& scene, const TetParts& parts,
+                  const SessionOptions& options)
 {
-    if (!found.reads_texels || parts.count > 1) return false;
+    if (!found.reads_texels || parts.count > 1 || !options.program_file.empty()) return false;
     const auto fits = [&](const SceneBuffer& buffer) {
         return buffer.bytes.size() / sizeof(std::uint32_t) <= found.limits.texels;
     };
@@ -77,7 +80,9 @@ VulkanSession::VulkanSession(const FoundDevice& found, const KernelId& kernel, c
                              const SessionOptions& options)
     : context_(found), tet_parts_(tet_parts(scene, max_buffer(found.facts, options))),
       max_buffer_bytes_(max_buffer(found.facts, options)), tile_height_(tile_height_of(options)), kernel_(kernel),
-      program_cache_(options.program_cache), in_texels_(is_in_texels(found, scene, tet_parts_)),
+      program_cache_(options.program_cache),
+      given_program_(options.program_file.empty() ? "" : required_bytes(options.program_file)),
+      in_texels_(is_in_texels(found, scene, tet_parts_, options)),
       stack_entries_(in_texels_ ? array_entries(scene.stack_entries) : 0), domain_(domain_of(scene)),
       launches_(tile_height_, found.limits.groups)
 {
@@ -158,6 +163,8 @@ void VulkanSession::make_program()
                  .selects_minima = context_.found().selects_minima,
                  .stack_top = context_.found().stack_top,
                  .stack_entries = stack_entries_};
+    const EmbeddedKernel given{id.name, std::as_bytes(std::span(given_program_))};
+    if (!given_program_.empty()) id.kernels = {&given, 1};
     if (in_texels_) id.texels = texel_bindings(kernel_.layout);
     if (acceleration_) id.structure = structure_binding;
     for (std::uint32_t binding = 0; !in_texels_ && binding < arrays_.size(); ++binding)

@@ -73,6 +73,7 @@ private:
     unsigned tile_height_;
     KernelId kernel_;
     std::filesystem::path program_cache_;
+    std::string given_program_;       ///< SPIR-V; empty: the embedded one
     bool starts_outside_ = true;      ///< all rays so far start outside: the program cannot start otherwise
     bool in_texels_ = false;          ///< the scene's arrays are read as texels
     std::uint32_t stack_entries_ = 0; ///< as ProgramId has it

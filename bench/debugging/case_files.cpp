@@ -2,11 +2,14 @@
 
 #include "bench/debugging/dump.h"
 #include "bench/debugging/trace_run.h"
+#include "bench/inspection/work_folder.h"
 #include "bench/options/browser_api.h"
 #include "bench/options/identity.h"
 #include "bench/rows/row_tracing.h"
 #include "bench/rows/rows.h"
+#include "bench/variants/variant_program.h"
 #include "core/base/error.h"
+#include "core/base/files.h"
 #include "core/base/printable.h"
 #include "core/device/defects.h"
 #include "core/device/given_quads.h"
@@ -15,6 +18,7 @@
 #include "core/device/session.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstring>
@@ -150,13 +154,24 @@ std::string title_of_tile(const SceneWork& scene, const RowKey& key, const Backe
     return title;
 }
 
+/// In place of the program that of its variant, which has the same answers.
+void change_program(LaunchCase& launch, const Options& options, const std::string& backend, const KernelId& kernel)
+{
+    const VariantProgram variant(backend, kernel);
+    const WorkFolder folder;
+    const std::string text = variant.text().with(variant.text().named(options.changes));
+    launch.program.bytes = required_bytes(variant.write(text, folder.path()));
+    launch.program.what += fmt::format(", with the changes {}", fmt::join(options.changes, ", "));
+}
+
 DumpedCase tile_case(const Options& options, const Backend& backend)
 {
     if (one_kernel(options).math != MathMode::exact)
         throw Error(ErrorKind::usage, "dump: a case is of math mode exact: in fast, every driver may have other hits");
     const RowKey key = expecting_row(options);
     if (!backend.defect_case(all_defects().front().name, {})) refuse_case(backend);
-    const Device target = case_target(options, backend);
+    Device target = case_target(options, backend);
+    if (!options.changes.empty() && backend.name() == "vulkan") target.kind = DeviceKind::gpu; // no texels, as variants
     SceneWork scene = load_work(scene_requests(options).front(), options);
     RowRun row = open_row(key, scene, options);
     if (row.session == nullptr) throw Error(ErrorKind::unsupported, fmt::format("dump: openmp: {}", reason_of(row)));
@@ -170,8 +185,9 @@ DumpedCase tile_case(const Options& options, const Backend& backend)
         launch_params(job, domain_of(packed), tile_height_of(session_options(options)), TetParts{}.log2_bytes);
     const std::uint32_t columns = (job.width + TILE_WIDTH - 1) / TILE_WIDTH;
     launch.first_tile = number / job.width / launch.tile_height * columns + number % job.width / TILE_WIDTH;
-    const auto made = backend.tile_case(target, key.kernel, packed, launch, quads_of_case(scene, row));
+    auto made = backend.tile_case(target, key.kernel, packed, launch, quads_of_case(scene, row));
     if (!made) refuse_case(backend);
+    if (!options.changes.empty()) change_program(*made, options, backend.name(), key.kernel);
     return files_of_case(*made, output_of_tile(launch, hits), title_of_tile(scene, key, backend, options));
 }
 

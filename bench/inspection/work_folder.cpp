@@ -14,7 +14,7 @@ WorkFolder::WorkFolder()
     std::error_code none; // then the current folder
     std::string name = (std::filesystem::temp_directory_path(none) / "tetrace-inspect-XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr)
-        throw Error(ErrorKind::invalid_input, "inspect: no temporary folder '" + name + "': " + std::strerror(errno));
+        throw Error(ErrorKind::invalid_input, "no temporary folder '" + name + "': " + std::strerror(errno));
     path_ = name;
 }
 

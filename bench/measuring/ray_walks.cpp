@@ -47,7 +47,8 @@ Path own_path(const RowRun& row, const DifferingRay& ray)
     }
 }
 
-/// The command that follows the ray on this device and on openmp; empty for kernels that are not ours.
+} // namespace
+
 std::string trace_command(const RowRun& row, std::uint32_t view, std::uint32_t x, std::uint32_t y)
 {
     if (row.scene == nullptr || row.scene->arguments().empty() || !is_portable(row.key.kernel)) return {};
@@ -63,8 +64,6 @@ std::string trace_command(const RowRun& row, std::uint32_t view, std::uint32_t x
     text += fmt::format(" --backend {}", row.key.backend);
     return row.key.device == 0 ? text : text + fmt::format(" --device {}:{}", row.key.backend, row.key.device);
 }
-
-} // namespace
 
 void note_walks(RowRun& row)
 {

@@ -8,4 +8,8 @@ namespace tetrace {
 /// the walks in the row's record. Rows without such rays do not change. Throws only Error{interrupted}.
 void note_walks(RowRun& row);
 
+/// The command that follows a ray on the row's device and on openmp; empty for kernels that are not ours. view: its
+/// number in the camera set.
+[[nodiscard]] std::string trace_command(const RowRun& row, std::uint32_t view, std::uint32_t x, std::uint32_t y);
+
 } // namespace tetrace

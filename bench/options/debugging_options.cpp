@@ -82,6 +82,9 @@ std::vector<OptionRow> trace_options()
              "; or another launch of it, " + launch_of_defect +
              ". Default: files of the kernel of --method and --layout, or with --scene a case of it.",
          bit(Verb::dump), false, set_defect},
+        {"Ray", "--variant", "CHANGE",
+         "Change the kernel of the case by these changes, as 'check --variants' names them. Default: none.",
+         bit(Verb::dump), true, append_text(&Options::changes)},
         {"Ray", "--view", "N", "The view of the camera set, numbered from 0. Default: 0.", with_ray, false,
          [](Options& o, const std::string& v) { o.views = fmt::format("{}", parse_count("--view", v, 0, 1u << 30)); },
          usual_for(bit(Verb::trace), "the view of the camera set")},

@@ -86,7 +86,9 @@ const VerbHelp verb_help[] = {
      "other hit is wrong.\n\n"
      "The first differing ray and the first wrong ray of a row are printed in full, with the 'tetrace trace' "
      "command that follows it. --defects runs the reduced kernels of known compiler defects instead, and "
-     "--stress kernels in forms in which compilers have been wrong, at up to a million items.\n\n"
+     "--stress kernels in forms in which compilers have been wrong, at up to a million items. --variants changes the "
+     "text of the "
+     "selected kernels at random, so that it means the same, and reduces what fails to the change that matters.\n\n"
      "--expect names files of what implementations are known to show, which --write-expect writes: what they list "
      "passes, and a change in either direction fails. --repeat finds rows that differ from one time to the next.\n\n"
      "Exits with 1 if a device is wrong or not exact. Wrong and lost rays that a method has on openmp, too, bit for "
@@ -100,6 +102,7 @@ const VerbHelp verb_help[] = {
      "  tetrace check --scene cubes --write-expect expected\n"
      "  tetrace check --scene cubes --expect expected --repeat 10\n"
      "  tetrace check --defects --stress --junit defects.xml\n"
+     "  tetrace check --variants 100 --scene cubes --size 32 --backend opencl,vulkan --budget 10m\n"
      "  tetrace check --scene bunny --camera-set flight --views 0-1281:40 --out check.json\n"},
     {Verb::render, "write pictures",
      "Traces the selected views and writes a picture of each: the surface shaded by its normals, or the steps of each "

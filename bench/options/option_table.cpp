@@ -386,6 +386,14 @@ std::vector<OptionRow> judging_options()
          "Run stressors instead of rows: small kernels in forms in which compilers have been wrong, at 1 to 1,000,000 "
          "items. With --defects, both. Exits with 1 if a result is wrong.",
          bit(Verb::check), false, set(&Options::stress)},
+        {"Judging", "--variants", "N",
+         "Check N variants of each selected kernel instead of rows: its text with random changes that keep its "
+         "meaning, "
+         "compiled anew by the driver. Each has the hits of the unchanged kernel, or the driver is wrong. 1 to "
+         "1000000.",
+         bit(Verb::check), false, set_count("--variants", &Options::variants, 1, 1'000'000)},
+        {"Judging", "--seed", "S", "Choose other variants: 0 to 4294967295. Default: 1.", bit(Verb::check), false,
+         [](Options& o, const std::string& v) { o.seed = parse_count("--seed", v, 0, 0xFFFFFFFF); }},
         {"Judging", "--tolerance", "PERCENT",
          "The difference in time that does not matter, in percent, 0 to 100. A row that is SLOWER by more is a "
          "regression; a row whose whole interval is within it is the SAME. Default: 3.",

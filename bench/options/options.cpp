@@ -187,6 +187,8 @@ void check_together(const Options& options)
     if ((options.defects || options.stress) && !shard_of(options).is_whole())
         throw Error(ErrorKind::usage, std::string(options.defects ? "--defects" : "--stress") +
                                           " takes only seconds and cannot be sharded; leave out --shard");
+    if (options.variants == 0 && options.seed)
+        throw Error(ErrorKind::usage, "--seed chooses variants; say how many with --variants");
     if (options.brief && !options.columns.empty())
         throw Error(ErrorKind::usage, "--columns: --brief has columns of its own; leave one of them out");
     if (options.verb == Verb::trace) check_ray(options);

@@ -184,6 +184,9 @@ struct Options {
     bool allow_flawed = false;
     bool defects = false;                                ///< of `check`: reduced kernels in place of rows
     bool stress = false;                                 ///< of `check`: stressors in place of rows
+    unsigned variants = 0;                               ///< of `check`: changed kernels of each row; 0: rows
+    std::optional<std::uint64_t> seed;                   ///< of the variants; empty: 1
+    std::vector<std::string> changes;                    ///< of a case of `dump`: of the kernel's text, by name
     unsigned repeat = 1;                                 ///< of `check`: how often rows are checked
     std::vector<std::filesystem::path> expected;         ///< of `check`: files and folders of expectations
     std::optional<std::filesystem::path> write_expected; ///< of `check`: file or folder of what it showed
@@ -216,6 +219,12 @@ struct Options {
 /// Reads a command line, without the program's name.
 /// Throws Error{usage} naming what is not accepted, and the accepted values.
 [[nodiscard]] Options parse_options(const std::vector<std::string>& arguments);
+
+/// Whether a check is of rows, and not of other kernels in their place.
+[[nodiscard]] inline bool has_rows(const Options& options)
+{
+    return !options.defects && !options.stress && options.variants == 0;
+}
 
 /// The scenes asked for with their one set of build options; the default scenes where none was named. Precondition: one
 /// domain, one kind of tets, at most one number of divisions and set of switches (parse_options ensures it, except for

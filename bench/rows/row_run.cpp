@@ -54,6 +54,8 @@ void open_session(RowRun& row, const SceneData& data, const Options& options)
 {
     SessionOptions session = session_options(options);
     if (row.key.threads != 0) session.threads = row.key.threads;
+    session.program_file = row.program_file;
+    if (!row.program_file.empty()) session.program_cache.clear();
     row.max_buffer_bytes = max_buffer(row.device, session);
     row.session = row.backend->open(row.key.device, row.key.kernel, data, session);
     note_building(row);

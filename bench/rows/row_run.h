@@ -19,6 +19,7 @@ struct RowRun : RowRecord {
     Backend* backend = nullptr;
     const Packed* packed = nullptr; ///< null for kernels that are not portable
     std::unique_ptr<Session> session;
+    std::filesystem::path program_file;  ///< as SessionOptions has it; its program is in no cache
     std::uint64_t max_buffer_bytes = 0;  ///< that the session may make; 0: no limit
     ViewBatch views_of_rays;             ///< views whose rays the session has been given; see prepare_batch()
     std::vector<ViewBatch> batches;      ///< of a pass of a sample: one launch each

@@ -257,12 +257,16 @@ void require_whole_rows(const Options& options)
                "leave one of them out");
     if (options.repeat > 1 && options.resume)
         reject("--repeat: a journal has each view once, so repetitions cannot be resumed; leave out --resume");
-    const bool has_rows = !options.defects && !options.stress;
-    if (!has_rows && (options.resume || options.picture_folder || options.allow_flawed))
-        reject("--defects and --stress run small kernels, and no rows; leave out --resume, --differences and "
-               "--allow-flawed");
-    if (options.repeat > 1 && !has_rows)
-        reject("--repeat repeats rows, and --defects and --stress have none; leave one of them out");
+    const bool has_no_rows = !has_rows(options);
+    if (options.variants > 0 && (options.defects || options.stress))
+        reject("--variants changes the kernels of rows, and --defects and --stress run others; leave one of them out");
+    if (options.variants > 0 && (!options.expected.empty() || options.write_expected || is_shard))
+        reject("--variants has no expectations and no shards; leave out --expect, --write-expect and --shard");
+    if (has_no_rows && (options.resume || options.picture_folder || options.allow_flawed))
+        reject("--defects, --stress and --variants run other kernels than those of rows; leave out --resume, "
+               "--differences and --allow-flawed");
+    if (options.repeat > 1 && has_no_rows)
+        reject("--repeat repeats rows, and --defects, --stress and --variants have none; leave one of them out");
     if (options.repeat > 1 && is_shard) reject("--repeat: shards have no repetitions; leave out --shard");
     if (is_shard && (!options.expected.empty() || options.write_expected))
         reject("--expect and --write-expect are about whole rows, and a shard has some of their views; leave out "
@@ -277,6 +281,7 @@ int check_command(const Options& asked)
     if (options.list) return list_selected(options);
     require_whole_rows(options);
     if (options.defects || options.stress) return check_defects(options);
+    if (options.variants > 0) return check_variants(options);
     check_output(options);
     const StopWhenInterrupted stop;
     if (options.junit || options.out) something_to_keep(); // also where a CI's time ends before the first view

@@ -47,6 +47,8 @@ void require_judged(const std::vector<RowRecord>& rows, const CheckJudgement& ju
 
 /// `check --defects` and `check --stress`. options: with the default layouts of check.
 int check_defects(const Options& options);
+/// `check --variants`, as check_defects().
+int check_variants(const Options& options);
 
 /// Throws Error{missing} naming the first backend of the list without a usable device, with the reason.
 void require_devices(const std::vector<std::string>& backends);

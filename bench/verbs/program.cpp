@@ -60,7 +60,7 @@ std::string words_when_begun(const Options& options)
                        : options.verb == Verb::render ? "pictures that were written before are whole"
                                                       : "an earlier result is unchanged";
     const bool resumes = options.verb == Verb::bench || options.verb == Verb::reproduce ||
-                         (options.verb == Verb::check && options.repeat == 1 && !options.defects && !options.stress);
+                         (options.verb == Verb::check && options.repeat == 1 && has_rows(options));
     const char* hint = resumes && !options.out ? "; with --out FILE.json, --resume can go on" : "";
     return fmt::format("tetrace: interrupted; {}. To begin again: {}{}", kept, command_of(command_line()), hint);
 }

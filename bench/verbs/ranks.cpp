@@ -266,7 +266,7 @@ bool is_shared(const Options& options)
 {
     const bool takes_shards =
         options.verb == Verb::bench || options.verb == Verb::check || options.verb == Verb::reproduce;
-    return takes_shards && !options.shard && !options.list && !options.defects && !options.stress;
+    return takes_shards && !options.shard && !options.list && has_rows(options);
 }
 
 int run_rank(const Rank& rank, const Options& asked, const std::function<int(const Options&)>& run_verb)

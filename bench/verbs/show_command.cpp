@@ -1,10 +1,12 @@
 #include "bench/debugging/defect_report.h"
 #include "bench/debugging/trace_sheet.h"
+#include "bench/expectations/check_verdict.h"
 #include "bench/output/report.h"
 #include "bench/output/trust.h"
 #include "bench/reproduce/tables/recorded_tables.h"
 #include "bench/results/result_file.h"
 #include "bench/show/show_report.h"
+#include "bench/variants/variant_report.h"
 #include "bench/verbs/commands.h"
 #include "core/base/error.h"
 
@@ -49,6 +51,11 @@ Report shown(const ResultFile& file, const Options& options)
         ShownDefects defects = shown_defects(file.section());
         report.sheet.append(defects.sheet);
         report.table = std::move(defects.table);
+    } else if (file.section().find("variants")) {
+        ShownVariants variants = shown_variants(file.section());
+        report.sheet.append(variants.sheet);
+        report.sheet.append(verdict_line(file.section()));
+        report.table = std::move(variants.table);
     } else {
         RunAgain again = run_again(file, options.brief);
         report.sheet.append(again.sheet);

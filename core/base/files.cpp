@@ -171,6 +171,13 @@ std::optional<std::string> file_bytes(const std::filesystem::path& path, std::si
     return bytes;
 }
 
+std::string required_bytes(const std::filesystem::path& path)
+{
+    auto bytes = file_bytes(path);
+    if (!bytes) throw Error(ErrorKind::missing, "the file '" + path.string() + "' cannot be read");
+    return std::move(*bytes);
+}
+
 LockAttempt try_lock(int file)
 {
     struct flock whole {};

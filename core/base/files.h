@@ -74,6 +74,9 @@ void require_writable(const std::filesystem::path& path);
 [[nodiscard]] std::optional<std::string> file_bytes(const std::filesystem::path& path,
                                                     std::size_t most = std::numeric_limits<std::size_t>::max());
 
+/// The same of a whole file that must be there. Throws Error{missing} naming the path.
+[[nodiscard]] std::string required_bytes(const std::filesystem::path& path);
+
 /// How an attempt to lock a file ended; failed: errno says why.
 enum class LockAttempt { taken, held, failed };
 

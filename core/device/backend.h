@@ -157,6 +157,9 @@ struct SessionOptions {
     unsigned packet_lanes = 0;                ///< of schedule packets, one of packet_widths; 0: the widest there is
     std::uint64_t max_buffer_bytes = 0;       ///< limit to impose on the device's largest buffer; 0: none
     std::filesystem::path program_cache = {}; ///< folder for compiled kernels; empty: they are not kept
+    /// A file that replaces the kernel's program: for opencl OpenCL C, for vulkan SPIR-V that reads the scene from
+    /// storage buffers. Other backends do not read it. Empty: nothing is replaced.
+    std::filesystem::path program_file = {};
 };
 
 /// One image's worth of primary rays, or the rays that a session was given: see given_job(), search_job().

@@ -171,12 +171,13 @@ CompiledCode get_code(ByteReader& from, const SharedMemory& text)
 
 void put_options(ByteWriter& to, const SessionOptions& options)
 {
-    const auto& [threads, tile_height, packet_lanes, max_buffer_bytes, program_cache] = options;
+    const auto& [threads, tile_height, packet_lanes, max_buffer_bytes, program_cache, program_file] = options;
     to.put(threads);
     to.put(tile_height);
     to.put(packet_lanes);
     to.put(max_buffer_bytes);
     to.put_text(program_cache.native());
+    to.put_text(program_file.native());
 }
 
 SessionOptions get_options(ByteReader& from)
@@ -187,6 +188,7 @@ SessionOptions get_options(ByteReader& from)
     options.packet_lanes = from.get<unsigned>();
     options.max_buffer_bytes = from.get<std::uint64_t>();
     options.program_cache = from.get_text();
+    options.program_file = from.get_text();
     return options;
 }
 

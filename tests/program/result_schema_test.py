@@ -171,6 +171,7 @@ class ResultSchema(unittest.TestCase):
                    "table5": fresh(["reproduce", "table5", "--searches", "20x8", "--samples", "3", "--sample-time", "0", "--method", "maria",
                                     "--layout", "tet80", "--backend", "openmp", "--threads", "1"]),
                    "defects": fresh(["check", "--defects", "--stress"], (0, 1)),
+                   "variants": fresh(["check", "--variants", "1", "--scene", "cubes", "--resolution", "3", "--size", "8", "--layout", "half32"], (0, 3)),
                    "trace": fresh(["trace", "--scene", "cubes", "--resolution", "3", "--size", "8", "--pixel", "4,4", "--backend", "openmp,cuda-host"]),
                    "ray": fresh(["trace", "--scene", "cubes", "--resolution", "3", "--size", "8", "--pixel", "4,4", "--backend", "openmp",
                                  "--rays", "ao", "--ray-order", "morton"]),

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "bench/variants/changes.h"
+#include "core/pack/kernel_id.h"
+
+#include <filesystem>
+#include <string>
+
+namespace tetrace {
+
+/// The text of a backend's kernel, and programs of its variants.
+class VariantProgram {
+public:
+    /// Throws Error{unsupported} if the backend's programs are not made of their text where the program runs.
+    VariantProgram(const std::string& backend, const KernelId& kernel);
+
+    [[nodiscard]] const VariantText& text() const { return text_; }
+
+    /// Writes the program of a text into a folder, as SessionOptions::program_file has it; returns its file. Throws
+    /// Error{driver} with its messages if glslangValidator refuses the text, and Error{missing} if it is not installed.
+    [[nodiscard]] std::filesystem::path write(const std::string& text, const std::filesystem::path& folder) const;
+
+private:
+    struct Source {
+        std::string name, text;
+        std::string program, command; ///< that makes the program of the text; empty: the text is the program
+    };
+    static Source source_of(const std::string& backend, const KernelId& kernel);
+    explicit VariantProgram(Source source) : source_(std::move(source)), text_(source_.text) {}
+
+    Source source_;
+    VariantText text_;
+};
+
+} // namespace tetrace
