@@ -71,10 +71,9 @@ std::string what_of(const std::string& variant)
     if (variant.ends_with("_leaves_texels")) text += "; leaves rays at ties to another program";
     if (variant.ends_with("_left_texels")) text += "; traces the rays that another program has deferred";
     if (variant.ends_with("_pipeline")) text += ", made for a ray-tracing pipeline (--schedule pipeline)";
-    return text + ", as the driver gets it; constants: 0, a tile's height (8); 1, whether all rays start outside; 2, "
-                  "whether a select is faster than a minimum; 3, the entries of a stack in a group's memory; 4, all "
-                  "entries of a "
-                  "stack (0: the most)";
+    return text + "; the driver gets it with the values of its constants: 0, a tile's height (8); 1, whether all rays "
+                  "start outside; 2, whether a select is faster than a minimum; 3, the entries of a stack in a group's "
+                  "memory; 4, all entries of a stack (0: the most)";
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "backends/vulkan/program.h"
 
+#include "backends/vulkan/specialized.h"
 #include "core/base/hash.h"
 
 #include <array>
@@ -80,18 +81,20 @@ std::vector<vk::DescriptorSetLayoutBinding> bindings_of(const ProgramId& id)
     return bindings;
 }
 
-/// The stages of a pipeline that is being made: their modules and constants.
+/// The values of a program's specialization constants, by ID.
+std::vector<std::uint32_t> constants_of(const ProgramId& id)
+{
+    if (id.tile_height == 0) return {};
+    return {id.tile_height, id.starts_outside ? 1u : 0u, id.selects_minima ? 1u : 0u, id.stack_top, id.stack_entries};
+}
+
+/// The stages of a pipeline that is being made, and their modules.
 class Stages {
 public:
     Stages(const vk::raii::Device& device, const ProgramId& id)
-        : values_{id.tile_height, id.starts_outside ? VK_TRUE : VK_FALSE, id.selects_minima ? VK_TRUE : VK_FALSE,
-                  id.stack_top, id.stack_entries}
     {
-        for (std::uint32_t i = 0; i < entries_.size(); ++i)
-            entries_[i].setConstantID(i).setOffset(i * sizeof(values_[0])).setSize(sizeof(values_[0]));
-        constants_.setMapEntries(entries_).setDataSize(sizeof(values_)).setPData(values_.data());
         for (const ShaderId& shader : shaders_of(id))
-            add(device, shader.stage, module_of(id, shader.name), id.tile_height != 0);
+            add(device, shader.stage, specialized(module_of(id, shader.name).bytes, constants_of(id)));
     }
     Stages(const Stages&) = delete;
     Stages& operator=(const Stages&) = delete;
@@ -100,21 +103,13 @@ public:
     [[nodiscard]] const std::vector<vk::PipelineShaderStageCreateInfo>& infos() const { return infos_; }
 
 private:
-    void add(const vk::raii::Device& device, ShaderStage stage, const EmbeddedKernel& kernel, bool has_constants)
+    void add(const vk::raii::Device& device, ShaderStage stage, const std::vector<std::uint32_t>& code)
     {
-        // Embedded bytes are aligned for words.
-        modules_.push_back(
-            device.createShaderModule(vk::ShaderModuleCreateInfo{}
-                                          .setCodeSize(kernel.bytes.size())
-                                          .setPCode(reinterpret_cast<const std::uint32_t*>(kernel.bytes.data()))));
+        modules_.push_back(device.createShaderModule(vk::ShaderModuleCreateInfo{}.setCode(code)));
         infos_.push_back(
             vk::PipelineShaderStageCreateInfo{}.setStage(stage).setModule(*modules_.back()).setPName("main"));
-        if (has_constants) infos_.back().setPSpecializationInfo(&constants_);
     }
 
-    std::array<std::uint32_t, 5> values_;
-    std::array<vk::SpecializationMapEntry, 5> entries_;
-    vk::SpecializationInfo constants_;
     std::vector<vk::raii::ShaderModule> modules_;
     std::vector<vk::PipelineShaderStageCreateInfo> infos_;
 };

@@ -1,11 +1,14 @@
 // The SPIR-V that devices get: nothing in exact modules may be contracted, and data is at the offsets that the host
 // uses.
 #include "backends/vulkan/kernels.h"
+#include "backends/vulkan/specialized.h"
+#include "core/base/error.h"
 #include "core/device/launch.h"
 #include "core/device/scene_buffers.h"
 #include "tests/backends/spirv/module.h"
 #include "tests/backends/spirv/twins.h"
 
+#include <array>
 #include <cstddef>
 #include <gtest/gtest.h>
 
@@ -180,6 +183,120 @@ TEST(Spirv, push_constants_are_launch_params_word_for_word)
         EXPECT_EQ(Module(kernel.bytes).push_constants(), expected_push_constants()) << kernel.name;
         EXPECT_TRUE(Module(kernel.bytes).has_specialization_constant(0)) << kernel.name << ": the tile's height";
     }
+}
+
+TEST(Spirv, nothing_depends_on_a_constant_that_has_its_value)
+{
+    const std::array<std::uint32_t, 5> values = {8, 1, 1, 8, 20};
+    for (const EmbeddedKernel& kernel : vulkan::embedded_kernels()) {
+        const auto words = vulkan::specialized(kernel.bytes, values);
+        const Module before(kernel.bytes), after(std::as_bytes(std::span(words)));
+        EXPECT_EQ(after.specialized_instructions(), 0u) << kernel.name;
+        EXPECT_FALSE(after.has_specialization_constant(0)) << kernel.name << ": only such a constant may have an ID";
+        EXPECT_EQ(after.rounding_operations(), before.rounding_operations()) << kernel.name;
+        EXPECT_EQ(after.contractible_operations(), before.contractible_operations()) << kernel.name;
+    }
+}
+
+TEST(Spirv, constants_are_replaced_by_their_values_and_so_is_what_is_computed_of_them)
+{
+    const auto op = [](std::uint32_t words, spv::Op code) { return words << 16 | code; };
+    const std::vector<std::uint32_t> head = {spv::MagicNumber, 0x10300, 0, 20, 0},
+                                     ids[] = {{op(4, spv::OpDecorate), 10, spv::DecorationSpecId, 0},
+                                              {op(4, spv::OpDecorate), 11, spv::DecorationSpecId, 1},
+                                              {op(4, spv::OpDecorate), 12, spv::DecorationSpecId, 7}};
+    const std::vector<std::uint32_t> types = {
+        op(2, spv::OpTypeBool), 1, op(4, spv::OpTypeInt), 2, 32, 0, op(4, spv::OpTypeVector), 3, 2, 2};
+    std::vector<std::uint32_t> module = head, wanted = head;
+    const auto add = [](std::vector<std::uint32_t>& to, const std::vector<std::uint32_t>& words) {
+        to.insert(to.end(), words.begin(), words.end());
+    };
+    for (const auto& id : ids)
+        add(module, id);
+    add(wanted, ids[2]);
+    add(module, types);
+    add(wanted, types);
+    const std::vector<std::uint32_t> kept = {
+        op(4, spv::OpSpecConstant), 2, 12, 5, op(6, spv::OpSpecConstantOp), 2, 19, spv::OpIMul, 10, 12};
+    add(module, {op(4, spv::OpSpecConstant),
+                 2,
+                 10,
+                 1,
+                 op(3, spv::OpSpecConstantFalse),
+                 1,
+                 11,
+                 op(5, spv::OpSpecConstantComposite),
+                 3,
+                 13,
+                 10,
+                 10,
+                 op(6, spv::OpSpecConstantOp),
+                 2,
+                 14,
+                 spv::OpCompositeExtract,
+                 13,
+                 1,
+                 op(6, spv::OpSpecConstantOp),
+                 2,
+                 15,
+                 spv::OpIMul,
+                 14,
+                 10,
+                 op(6, spv::OpSpecConstantOp),
+                 1,
+                 16,
+                 spv::OpULessThan,
+                 10,
+                 15,
+                 op(7, spv::OpSpecConstantOp),
+                 2,
+                 17,
+                 spv::OpSelect,
+                 16,
+                 15,
+                 10,
+                 op(6, spv::OpSpecConstantOp),
+                 1,
+                 18,
+                 spv::OpIEqual,
+                 10,
+                 15});
+    add(wanted, {op(4, spv::OpConstant),
+                 2,
+                 10,
+                 6,
+                 op(3, spv::OpConstantTrue),
+                 1,
+                 11,
+                 op(5, spv::OpConstantComposite),
+                 3,
+                 13,
+                 10,
+                 10,
+                 op(4, spv::OpConstant),
+                 2,
+                 14,
+                 6,
+                 op(4, spv::OpConstant),
+                 2,
+                 15,
+                 36,
+                 op(3, spv::OpConstantTrue),
+                 1,
+                 16,
+                 op(4, spv::OpConstant),
+                 2,
+                 17,
+                 36,
+                 op(3, spv::OpConstantFalse),
+                 1,
+                 18});
+    add(module, kept);
+    add(wanted, kept);
+    const std::array<std::uint32_t, 2> values = {6, 1};
+    EXPECT_EQ(vulkan::specialized(std::as_bytes(std::span(module)), values), wanted);
+    module.pop_back();
+    EXPECT_THROW(static_cast<void>(vulkan::specialized(std::as_bytes(std::span(module)), values)), Error);
 }
 
 TEST(Spirv, what_traces_by_a_drivers_bvh_gets_the_same_launches_and_makes_the_same_rays)

@@ -100,6 +100,9 @@ public:
         return false;
     }
 
+    /// Instructions whose value a specialization constant decides, and such constants.
+    [[nodiscard]] std::size_t specialized_instructions() const { return specialized_; }
+
 private:
     struct Variable {
         std::uint32_t type;
@@ -124,6 +127,11 @@ private:
         case spv::OpMatrixTimesMatrix:
         case spv::OpOuterProduct: rounding_.push_back(words[1]); break; // OpFNegate does not round
         case spv::OpExtInst: fused_ += words[3] == GLSLstd450Fma ? 1 : 0; break;
+        case spv::OpSpecConstantTrue:
+        case spv::OpSpecConstantFalse:
+        case spv::OpSpecConstant:
+        case spv::OpSpecConstantComposite:
+        case spv::OpSpecConstantOp: ++specialized_; break;
         case spv::OpDecorate: decorations_[{words[0], words[1]}] = words.size() > 2 ? words[2] : 0; break;
         case spv::OpMemberDecorate:
             member_decorations_[{{words[0], words[1]}, words[2]}] = words.size() > 3 ? words[3] : 0;
@@ -173,7 +181,7 @@ private:
     using Pair = std::pair<std::uint32_t, std::uint32_t>;
     std::vector<std::uint32_t> words_;
     std::vector<std::uint32_t> rounding_;
-    std::size_t fused_ = 0;
+    std::size_t fused_ = 0, specialized_ = 0;
     std::map<Pair, std::uint32_t> decorations_; ///< {id, decoration}: its first operand
     std::map<std::pair<Pair, std::uint32_t>, std::uint32_t> member_decorations_; ///< {{type, member}, decoration}
     std::map<std::uint32_t, std::string> names_;
