@@ -140,6 +140,9 @@ const VerbHelp verb_help[] = {
      "of a ray alone, and of a full device, for random rays through lattices of 1 MB to 4 GB, with a figure per "
      "device. It is run by itself and measures as 'bench' does. Scenes that memory or --budget has no room for are "
      "left out, with the reason.\n\n"
+     "volume: all tets of a ray, the sums of lengths per tet, and light (docs/volume.md), on every device, with one "
+     "thread and with all: whether hashes and sums are equal, what the lengths of uniform lines are by integral "
+     "geometry, and how many rays each method loses. It is run by itself and measures as 'bench' does.\n\n"
      "figure6: time over tets traversed, one point per view, their correlation, and pictures of the two extreme "
      "views.\n\n"
      "Timing: each view, and each batch of searches, has a launch of its own, as in the paper's frames per second. "
@@ -157,6 +160,7 @@ const VerbHelp verb_help[] = {
      "  tetrace reproduce table5 --searches 1000x16384 --backend openmp,cuda\n"
      "  tetrace reproduce rivals --out rivals.json    15 minutes on two cores; with --scene bunny, 3\n"
      "  tetrace reproduce ladder --size 1024 --out ladder.json\n"
+     "  tetrace reproduce volume --out volume.json\n"
      "  tetrace reproduce --backend openmp --layout tet80 --out all.json --resume\n"},
     {Verb::inspect, "show what real GPU compilers make of the kernels",
      "Compiles every entry point of the selected kernels for GPUs that need not be here, and prints what the "
