@@ -273,7 +273,7 @@ std::vector<OptionRow> ray_options()
         {"Rays", "--size", "WxH",
          "Image size in pixels, one ray each; N means NxN. 'bench' accepts a list, for example 256,512,1024, and "
          "measures each row at each size. Default: 1024x1024; for 'check', 'trace', 'dump' and 'page' 256x256, for "
-         "'reproduce rivals' and 'ladder' 512x512, for 'reproduce volume' 128x128.",
+         "'reproduce rivals' and 'ladder' 512x512, for 'reproduce volume' 64x64.",
          with_rays, true,
          [](Options& o, const std::string& v) {
              std::tie(o.width, o.height) = parse_size("--size", v);
@@ -333,8 +333,8 @@ std::vector<OptionRow> judging_options()
          "repeatedly for --sample-time. Of 'reproduce' for each row and view, or batch of searches. Fewer than 5 give "
          "no interval, here and in 'compare'. Default: 10, and up to three times as many for rows that are noisy, "
          "while --budget "
-         "lasts (not with --runs, nor with Google Benchmark's output); of 'reproduce' 5, except for rivals "
-         "and ladder.",
+         "lasts (not with --runs, nor with Google Benchmark's output); of 'reproduce' 5, except for rivals, "
+         "ladder and volume (3).",
          bit(Verb::bench) | bit(Verb::reproduce), false,
          [](Options& o, const std::string& v) {
              set_count("--samples", &Options::samples, 3, 10000)(o, v);
@@ -351,7 +351,7 @@ std::vector<OptionRow> judging_options()
          "followed by s, up to a minute. A GPU traces all views in less than a millisecond, too short for its "
          "clocks to settle. Passes follow each other without the host, and rates are per pass. 0: a sample is one "
          "pass. Default: 0.1; of 'reproduce', which takes samples of each of up to 1,282 views, 0.005, except for "
-         "rivals and ladder, and volume, 0.02.",
+         "rivals, ladder and volume (0).",
          bit(Verb::bench) | bit(Verb::reproduce), false,
          [](Options& o, const std::string& v) { o.sample_s = parse_sample_time(v); }},
         {"Measuring", "--budget", "TIME",
@@ -363,7 +363,7 @@ std::vector<OptionRow> judging_options()
          "'reproduce' shares the time evenly by the scenes that are left. The result states the budget that the "
          "skipped rows need. With --repeat, each repetition has it. One row is always measured, however small TIME "
          "is; otherwise a run exceeds the budget by at most a quarter. --benchmark_repetitions lifts the limit. "
-         "Default: 4m; of 'check' and 'reproduce' no limit, but of rivals 10m, of ladder and volume 5m.",
+         "Default: 4m; of 'check' and 'reproduce' no limit, but of rivals 10m, of ladder 5m.",
          sharing, false, set_seconds("--budget", &Options::budget_s),
          usual_for(bit(Verb::bench) | bit(Verb::reproduce), "time for verifying and timing: 30s, 10m")},
         {"Judging", "--require", "BACKEND",
@@ -399,8 +399,10 @@ std::vector<OptionRow> judging_options()
          bit(Verb::compare), false, set(&Options::allow_missing),
          usual_for(every_verb, "rows that B lacks do not fail")},
         {"Pictures", "--picture", "KIND",
-         "'normals', the surface shaded by its normals, or 'steps', the steps of each ray in false colour with a scale "
-         "bar. Default: normals.",
+         "'normals', the surface shaded by its normals; or, in false colour with a scale bar: 'steps' of each ray to "
+         "its "
+         "hit; 'crossings', all tets that it crosses; 'depth', the optical depth of a medium, and 'light', what it "
+         "emits (docs/volume.md). Default: normals.",
          bit(Verb::render), true, append("--picture", &Options::pictures), usual_for(every_verb, "what is shown: {}")},
         {"Pictures", "--differences", "FOLDER",
          "Write a picture of each view in which a row differs from openmp, with the differing pixels marked: PNG, or "

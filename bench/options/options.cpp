@@ -198,7 +198,7 @@ void check_together(const Options& options)
 constexpr std::string_view only_of_rivals[] = {"--runs"};
 constexpr std::string_view not_of_bench_runs[] = {"--builds", "--searches", "--shard", "--wait"};
 constexpr std::string_view not_of_ladder[] = {"--resume", "--camera-set", "--views"};
-constexpr std::string_view not_of_volume[] = {"--resume", "--camera-set", "--rays", "--math", "--schedule"};
+constexpr std::string_view not_of_volume[] = {"--resume", "--camera-set"};
 
 void check_bench_runs(const Options& options, const CLI::App& app)
 {
@@ -284,14 +284,15 @@ Options defaults_of_ladder()
     return options;
 }
 
-/// The same, for two views, and less per row: there are many.
+/// The same, for two views, and less per row: there are many, and their answers matter more than their rates.
 Options defaults_of_volume()
 {
     Options options = defaults_of_ladder();
     options.views = "0,1";
-    options.width = options.height = 128;
-    options.samples = 5;
-    options.sample_s = 0.02;
+    options.width = options.height = 64;
+    options.samples = 3;
+    options.sample_s = 0;
+    options.budget_s = std::numeric_limits<double>::infinity();
     return options;
 }
 

@@ -50,10 +50,11 @@ enum class Format { table, json, csv, markdown };
 template <>
 inline constexpr auto enum_names<Format> = names_up_to<Format::markdown>("table", "json", "csv", "markdown");
 
-/// A picture that `render` writes.
-enum class Picture { normals, steps };
+/// A picture that `render` writes: of hits; or, from crossings on, of all tets of each ray.
+enum class Picture { normals, steps, crossings, depth, light };
 template <>
-inline constexpr auto enum_names<Picture> = names_up_to<Picture::steps>("normals", "steps");
+inline constexpr auto enum_names<Picture> = names_up_to<Picture::light>("normals", "steps", "crossings", "depth",
+                                                                        "light");
 
 /// A table or a figure of the paper that `reproduce` measures again. Three are not in the paper: rivals, our own
 /// claims about tets and BVHs; ladder, what a step costs by the size of a scene; and volume, all tets of a ray.

@@ -5,6 +5,7 @@
 #include "core/base/files.h"
 #include "core/rays/absorbed.h"
 #include "core/rays/segments.h"
+#include "scenes/export_tets.h"
 
 #include <array>
 #include <cmath>
@@ -164,8 +165,7 @@ std::vector<NpyColumn> tally_columns(const Scene& scene, std::span<const std::ui
         if (named.empty()) return static_cast<std::int64_t>(i);
         return i < named.size() ? std::int64_t{named[i].number} : std::int64_t{no_number};
     }));
-    columns.push_back(
-        column("region", tets, [&](std::size_t i) { return i < named.size() ? named[i].region : std::int32_t{0}; }));
+    columns.push_back({"region", regions_of(scene)});
     columns.push_back(column("volume", tets, [&](std::size_t i) { return volume_of(scene, i); }));
     columns.push_back(column("units", tets, [&](std::size_t i) { return sums[packed_of_mesh[i]]; }));
     columns.push_back(column("length", tets, [&](std::size_t i) {

@@ -1,4 +1,4 @@
-// --out-arrays: the verified answers as .npy files.
+// What is written of all tets of a ray: arrays by --out-arrays, pictures by `render`.
 #include "tests/support/program_fixture.h"
 
 #include <cstring>
@@ -63,8 +63,8 @@ TEST_F(Arrays, of_own_tets_have_the_users_numbers_and_sums_that_are_those_of_the
     const auto numbers = tets.column<std::int64_t>("number");
     ASSERT_GT(numbers.size(), 3u);
     EXPECT_EQ(std::vector(numbers.begin(), numbers.begin() + 4), (std::vector<std::int64_t>{1, 2, 3, -1}));
-    const auto regions = tets.column<std::int32_t>("region");
-    EXPECT_EQ(std::vector(regions.begin(), regions.begin() + 3), (std::vector<std::int32_t>{7, 9, 7}));
+    const auto regions = tets.column<std::int64_t>("region");
+    EXPECT_EQ(std::vector(regions.begin(), regions.begin() + 4), (std::vector<std::int64_t>{7, 9, 7, 0}));
     const auto volumes = tets.column<double>("volume");
     EXPECT_NEAR(volumes[0], 64.0 / 6, 1e-6) << "in the mesh's units";
 
@@ -116,4 +116,22 @@ TEST_F(Arrays, are_refused_before_the_run_if_they_cannot_be_written_or_would_not
         EXPECT_TRUE(contains(ended.errors, "--out-arrays")) << ended.errors;
         EXPECT_FALSE(std::filesystem::exists(folder_ / "arrays")) << other;
     }
+}
+
+TEST_F(Arrays, pictures_of_crossings_depth_and_light_are_drawn_for_each_kind_of_tets)
+{
+    const Ended ended = run("render --scene cubes --resolution 6 --size 64 --views 0 --picture "
+                            "steps,crossings,depth,light --out a.ppm");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    std::map<std::string, std::string> pictures;
+    for (const std::string kind : {"steps", "crossings", "depth", "light"})
+        pictures[kind] = file(("a-cubes-0-" + kind + ".ppm").c_str());
+    for (const auto& [a, bytes] : pictures) {
+        EXPECT_TRUE(bytes.starts_with("P6")) << a;
+        for (const auto& [b, other] : pictures)
+            EXPECT_EQ(bytes == other, a == b) << a << " and " << b;
+    }
+    const Ended bvh =
+        run("render --scene cubes --resolution 6 --size 8 --views 0 --layout bvh2 --picture light --out b.ppm");
+    EXPECT_EQ(bvh.code, 2) << bvh.errors;
 }

@@ -33,12 +33,19 @@ std::size_t count_answered(const SameWork& work)
         std::ranges::count_if(work, [](const RowRecord* row) { return has_answers(*row); }));
 }
 
-/// Those whose answers have the hash of the first row's.
+/// The first with answers; null if there is none.
+const RowRecord* first_answered(const SameWork& work)
+{
+    const auto row = std::ranges::find_if(work, [](const RowRecord* candidate) { return has_answers(*candidate); });
+    return row == work.end() ? nullptr : *row;
+}
+
+/// Those whose answers have the hash of the first ones.
 std::size_t count_equal(const SameWork& work)
 {
-    const Traced* const first = traced(*work.front());
+    const RowRecord* const first = first_answered(work);
     return static_cast<std::size_t>(std::ranges::count_if(work, [&](const RowRecord* row) {
-        return first != nullptr && has_answers(*row) && traced(*row)->hit_hash == first->hit_hash;
+        return has_answers(*row) && traced(*row)->hit_hash == traced(*first)->hit_hash;
     }));
 }
 
@@ -73,9 +80,9 @@ PaperCell sums_cell(const SameWork& work)
 
 std::vector<PaperCell> cells_of_work(const SameWork& work, const std::vector<const RowRecord*>& places)
 {
-    const RowRecord& first = *work.front();
-    std::vector<PaperCell> cells{first.key.scene, kernel_title(first.key)};
-    if (const Traced* const result = traced(first)) {
+    std::vector<PaperCell> cells{work.front()->key.scene, kernel_title(work.front()->key)};
+    if (const RowRecord* const first = first_answered(work)) {
+        const Traced* const result = traced(*first);
         const Verdicts& verdicts = result->verdicts;
         cells.emplace_back(hash_text(result->hit_hash));
         cells.emplace_back(fmt::format("{} of {}", count_equal(work), count_answered(work)));
@@ -138,10 +145,10 @@ Claim lost_claim(const std::vector<SameWork>& works)
     Claim claim{"none-lost", "method project loses no ray and gets none wrong"};
     std::uint64_t rays = 0, flawed = 0;
     for (const SameWork& work : works) {
-        const Traced* const result = traced(*work.front());
-        if (work.front()->key.kernel.method != Method::project || result == nullptr) continue;
-        rays += result->totals.rays;
-        flawed += result->verdicts.lost + result->verdicts.wrong;
+        const RowRecord* const first = first_answered(work);
+        if (work.front()->key.kernel.method != Method::project || first == nullptr) continue;
+        rays += traced(*first)->totals.rays;
+        flawed += traced(*first)->verdicts.lost + traced(*first)->verdicts.wrong;
     }
     if (rays > 0) claim.verdict = flawed == 0 ? ClaimVerdict::holds : ClaimVerdict::does_not_hold;
     claim.evidence = fmt::format("{} of {} rays", flawed, rays);
