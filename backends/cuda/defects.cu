@@ -39,6 +39,7 @@ KERNEL_FN uint own_lane()
 #define lane_count(set) bit_count(set)
 #define lane_rank(set) bit_count((set) & ((1u << own_lane()) - 1u))
 #define from_first(here, value) __shfl_sync(here, value, static_cast<int>(31u - highest_bit((here) & (0u - (here)))))
+#define have_common_lane(a, b) (((a) & (b)) != 0u)
 #include "kernels/defects/lane_stressors.h"
 
 #define FAR_FN(name) KERNEL_FN void name(uint* results, uint* large, uint item_count)

@@ -36,6 +36,7 @@
 #define lane_count(set) sub_group_ballot_bit_count(set)
 #define lane_rank(set) sub_group_ballot_exclusive_scan(set)
 #define from_first(here, value) sub_group_broadcast_first(value)
+#define have_common_lane(a, b) (any(((a) & (b)) != 0u) != 0)
 #include "kernels/defects/lane_stressors.h"
 #endif
 #ifdef LARGE

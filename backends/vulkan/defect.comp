@@ -47,6 +47,7 @@ shared uint local_words[LOCAL_WORDS];
 #define lane_count(set) subgroupBallotBitCount(set)
 #define lane_rank(set) subgroupBallotExclusiveBitCount(set)
 #define from_first(here, value) subgroupBroadcastFirst(value)
+#define have_common_lane(a, b) (((a) & (b)) != uvec4(0u))
 #include "kernels/defects/lane_stressors.h"
 #endif
 #ifdef LARGE

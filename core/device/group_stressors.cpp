@@ -115,6 +115,14 @@ Output jobs_of_lanes(const DefectLaunch& launch)
     return words;
 }
 
+Output ballots_in_branches(const DefectLaunch& launch)
+{
+    Output words(launch.items);
+    for (std::uint32_t item = 0; item < launch.items; ++item)
+        words[item] = (item % 2 == 1 ? 1 : 4) ^ spread(item);
+    return words;
+}
+
 std::uint32_t far_value(std::uint32_t side, std::uint32_t item)
 {
     return spread(3 * item + side + 1);
@@ -186,6 +194,13 @@ std::span<const Defect> group_stressors()
          .is_stressor = true,
          .expected_output = jobs_of_lanes,
          .shared_words = 2,
+         .need = DefectNeed::ballots},
+        {.name = "ballots_in_branches",
+         .what = "ballots of subgroups in both sides of a branch, and in a loop that lanes leave at different times",
+         .known = "IGC#396, offload-test-suite#533",
+         .expected = nullptr,
+         .is_stressor = true,
+         .expected_output = ballots_in_branches,
          .need = DefectNeed::ballots},
         words_past_boundary("words_past_64_mib", "words of a buffer before and after byte 2^26, word 2^24",
                             std::uint64_t{1} << 26),

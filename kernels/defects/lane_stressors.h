@@ -1,8 +1,8 @@
 // Stressors of subgroups, in the words of group_stressors.h, after which it is included. Also defined by the entry
 // file: Lanes, a set of lanes of a subgroup; lanes_here(), those that execute it together; and of such a set:
 // votes(here, vote), those of it that vote so; has_lane(set), whether this lane is in it; lane_count(set);
-// lane_rank(set), how many of it come before this lane; from_first(here, value), the first one's. A device
-// may split the lanes that could run together in any way: the answer is the same.
+// lane_rank(set), how many of it come before this lane; from_first(here, value), the first one's;
+// have_common_lane(a, b). A device may split the lanes that could run together in any way: the answer is the same.
 
 // Jobs of several lengths for lanes: those without one take as many as they are, by one atomic sum, 64 times at most.
 // They leave the loop at different times. Words of all groups: how many jobs were taken, and how many lanes have left.
@@ -41,5 +41,33 @@ GROUP_FN(jobs_of_lanes)
         }
         Lanes after = lanes_here();
         if (lane_rank(after) == 0u) ADD(SHARED(1u), lane_count(after));
+    }
+}
+
+// Ballots in both sides of a branch, and in a loop that odd items leave after one round: the set has no lane that is
+// elsewhere.
+GROUP_FN(ballots_in_branches)
+{
+    EACH_ITEM
+    {
+        bool is_odd = (ITEM & 1u) == 1u;
+        Lanes all = lanes_here();
+        Lanes odd = votes(all, is_odd);
+        Lanes even = votes(all, !is_odd);
+        uint strays = 0u;
+        if (is_odd) {
+            Lanes here = lanes_here();
+            if (have_common_lane(here, even)) strays = 1u;
+        } else {
+            Lanes here = lanes_here();
+            if (have_common_lane(here, odd)) strays = 2u;
+        }
+        uint rounds = 0u;
+        do {
+            Lanes here = lanes_here();
+            if (rounds > 0u && have_common_lane(here, odd)) strays += 4u;
+            rounds += WORD(1u);
+        } while (!is_odd && rounds < 4u);
+        if (ITEM < ITEM_COUNT) RESULT(ITEM) = (strays * 8u + rounds) ^ (ITEM * 2654435761u);
     }
 }

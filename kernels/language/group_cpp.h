@@ -44,3 +44,7 @@ KERNEL_FN uint from_first(Lanes, uint value)
 {
     return value;
 }
+KERNEL_FN bool have_common_lane(Lanes a, Lanes b)
+{
+    return (a & b) != 0u;
+}
