@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <iterator>
 #include <numeric>
+#include <regex>
 #include <set>
 
 using namespace tetrace;
@@ -113,6 +114,23 @@ TEST(Changes, are_chosen_by_seed_and_number_and_never_touch_each_other)
         texts.insert(kernel.with(chosen));
     }
     EXPECT_EQ(texts.size(), 16u);
+}
+
+TEST(Changes, neither_add_nor_drop_an_operation_on_floats)
+{
+    // Products, quotients and differences, without those of the opaque zeros.
+    const auto operations = [](const std::string& changed) {
+        static const std::regex opaque("\\(\\((\\S+) \\| 1u\\) \\* \\(\\1 \\| 1u\\) & 4u\\)"), one(" [*/-] ");
+        const std::string own = std::regex_replace(changed, opaque, "0u");
+        return std::distance(std::sregex_iterator(own.begin(), own.end(), one), {});
+    };
+    for (const Layout layout : {Layout::half32, Layout::tet80}) {
+        const VariantProgram program("opencl", {.method = Method::project, .layout = layout});
+        const auto before = operations(program.text().with({}));
+        EXPECT_GT(before, 100);
+        for (std::uint32_t number = 1; number <= 8; ++number)
+            EXPECT_EQ(operations(program.text().with(program.text().choose(3, number))), before) << number;
+    }
 }
 
 TEST(Changes, of_a_name_that_there_is_not_or_of_one_place_are_refused)
