@@ -77,6 +77,15 @@ const std::vector<CatalogueEntry>& catalogue()
         procedural_row("plant",
                        "120 thin leaves that cross each other, cut where they do; 41,000 triangles before that",
                        {4'000, 4'000'000, [] { return make_plant(40'000); }, make_plant}),
+        procedural_row("nested", "three spheres with one centre in a cube, closed, 30,000 triangles",
+                       {2'000, 4'000'000, [] { return make_nested(30'000); }, make_nested}),
+        {"field",
+         SceneSource::points,
+         "Delaunay tets of random points with blobs of density, a radiance field's stand-in, 50,000 points; field@N "
+         "has N",
+         "",
+         {},
+         ProceduralMesh{100, 4'000'000, nullptr, nullptr, make_field, 50'000}},
         {"lattice",
          SceneSource::lattice,
          fmt::format("grid of cubes of any size with solid ones scattered in it; lattice:N has N along an axis, {} "
@@ -124,8 +133,9 @@ std::optional<ProceduralScene> find_procedural(const std::string& name)
     if (entry == nullptr || !entry->procedural) return std::nullopt;
     const auto triangles = number_behind(entry->name + "@", name);
     if (triangles && (*triangles < entry->procedural->least || *triangles > entry->procedural->most))
-        throw Error(ErrorKind::usage, fmt::format("scene {}: after the @ must be the number of its triangles, {} to {}",
-                                                  name, entry->procedural->least, entry->procedural->most));
+        throw Error(ErrorKind::usage, fmt::format("scene {}: after the @ must be the number of its {}, {} to {}", name,
+                                                  entry->procedural->make_points == nullptr ? "triangles" : "points",
+                                                  entry->procedural->least, entry->procedural->most));
     return ProceduralScene{*entry, triangles};
 }
 
@@ -187,7 +197,9 @@ std::vector<std::string> all_scenes()
 {
     std::vector<std::string> scenes;
     for (const CatalogueEntry& entry : catalogue())
-        if (entry.source != SceneSource::lattice && why_not_available(entry.name).empty()) scenes.push_back(entry.name);
+        if (entry.source != SceneSource::lattice && entry.source != SceneSource::points &&
+            why_not_available(entry.name).empty())
+            scenes.push_back(entry.name);
     return scenes;
 }
 

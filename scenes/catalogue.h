@@ -14,15 +14,18 @@ namespace tetrace {
 enum class SceneSource {
     cubes,      ///< embedded: tets made directly, no TetGen
     procedural, ///< a mesh that is made here; tets by the builder
+    points,     ///< points that are made here; their Delaunay tets by the builder
     lattice,    ///< embedded as cubes are, of any size
     file,       ///< a mesh file: of Debian's libcgal-demo, or the user's
 };
 
-/// A generator of meshes of any size.
+/// A generator of meshes of any size, or of points.
 struct ProceduralMesh {
-    std::uint32_t least, most;                     ///< triangles that a name can ask for
-    TriangleMesh (*usual)();                       ///< without a number
-    TriangleMesh (*make)(std::uint32_t triangles); ///< with about this many triangles
+    std::uint32_t least, most;                                  ///< triangles, or points, that a name can ask for
+    TriangleMesh (*usual)();                                    ///< without a number; null for points
+    TriangleMesh (*make)(std::uint32_t triangles);              ///< with about this many triangles; null for points
+    std::string (*make_points)(std::uint32_t points) = nullptr; ///< text of a .node file; null for triangles
+    std::uint32_t usual_points = 0;
 };
 
 /// One row of the catalogue: adding a scene is adding a row.
@@ -40,7 +43,7 @@ struct CatalogueEntry {
 /// A procedural scene that a name asks for.
 struct ProceduralScene {
     const CatalogueEntry& entry;
-    std::optional<std::uint32_t> triangles; ///< empty: as many as usual
+    std::optional<std::uint32_t> triangles; ///< or points; empty: as many as usual
 };
 /// Of a name "NAME" or "NAME@N" whose NAME is a procedural row; empty for another name. Throws Error{usage} if N is not
 /// a number in the row's range.
@@ -107,7 +110,7 @@ struct SceneRequest {
 /// `atrium`. Without a builder, only those that need none or may be in the cache: bunny and armadillo, or `cubes`.
 [[nodiscard]] std::vector<std::string> default_scenes();
 
-/// Every scene of the catalogue that is available here, except `lattice`, whose size is the user's choice.
+/// Every scene of the catalogue that is available here, except `lattice` and `field`, whose size is the user's choice.
 [[nodiscard]] std::vector<std::string> all_scenes();
 
 } // namespace tetrace

@@ -58,6 +58,8 @@ std::vector<std::int64_t> closed_parts(const TetMesh& mesh)
     return parts;
 }
 
+} // namespace
+
 std::vector<std::int64_t> regions_of(const Scene& scene)
 {
     if (scene.source_tets.empty()) return closed_parts(scene.tets);
@@ -68,6 +70,8 @@ std::vector<std::int64_t> regions_of(const Scene& scene)
     std::ranges::transform(scene.source_tets, regions.begin(), &SourceTet::region);
     return regions;
 }
+
+namespace {
 
 std::vector<double> costs_of(const Scene& scene)
 {

@@ -81,7 +81,9 @@ std::uint64_t MeshSceneLoader::hash_mesh() const
     std::string extension = mesh_.extension().string();
     std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
     fs::path file = mesh_;
-    if (extension == ".node") file.replace_extension(extension = ".ele"); // tets and vertices are in both
+    // Tets and vertices are in both files; points without tets in one.
+    if (extension == ".node" && fs::exists(fs::path(mesh_).replace_extension(".ele")))
+        file.replace_extension(extension = ".ele");
     if (add_file(hasher, file) == 0)
         throw Error(ErrorKind::invalid_input,
                     fmt::format("reading mesh {}: it is empty, no regular file, or may not be read", file.string()));

@@ -175,6 +175,8 @@ std::string off_text(const TriangleMesh& mesh)
 std::string mesh_text(const ProceduralScene& scene)
 {
     const ProceduralMesh& generator = *scene.entry.procedural;
+    if (generator.make_points != nullptr)
+        return generator.make_points(scene.triangles.value_or(generator.usual_points));
     return off_text(scene.triangles ? generator.make(*scene.triangles) : generator.usual());
 }
 
@@ -210,7 +212,8 @@ std::uint64_t hash_of_mesh_file(const ProceduralScene& scene)
 fs::path mesh_file(const ProceduralScene& scene)
 {
     const std::string text = mesh_text(scene);
-    fs::path target = cached_mesh_path(scene.entry.name + ".off", hash_of(text));
+    const char* const ending = scene.entry.procedural->make_points == nullptr ? ".off" : ".node";
+    fs::path target = cached_mesh_path(scene.entry.name + ending, hash_of(text));
     if (file_bytes(target) == text) return target;
     AtomicFile file(target);
     file.write(std::as_bytes(std::span(text)));

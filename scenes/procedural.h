@@ -3,6 +3,7 @@
 #include "core/mesh/scene.h"
 
 #include <cstdint>
+#include <string>
 
 namespace tetrace {
 
@@ -44,5 +45,12 @@ namespace tetrace {
 [[nodiscard]] TriangleMesh make_grass(std::uint32_t triangles);
 /// A stem and 120 thin, open leaves that cross it and each other. Only this mesh intersects itself.
 [[nodiscard]] TriangleMesh make_plant(std::uint32_t triangles);
+/// Three spheres with one centre in a cube; closed surfaces, so that the tets between two of them are a region.
+[[nodiscard]] TriangleMesh make_nested(std::uint32_t triangles);
+
+/// Points in place of a mesh, as the text of TetGen's .node, the same everywhere: the corners of a cube and random
+/// points in it, half of them in blobs of density. Each has a region, by its density: 0 to 3. The builder makes their
+/// Delaunay tets.
+[[nodiscard]] std::string make_field(std::uint32_t points);
 
 } // namespace tetrace

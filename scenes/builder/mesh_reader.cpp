@@ -59,6 +59,7 @@ void read_as(const std::string& extension, MeshSource& source)
     if (extension == ".mesh") return read_medit(source);
     if (extension == ".msh") return read_gmsh(source);
     if (extension == ".ele") return read_tetgen(source);
+    if (extension == ".node") return read_points(source);
     if (extension == ".vtk") return read_vtk(source);
     source.fail("name", "the format '" + extension + "' is not known",
                 "use a file with the extension .ply, .obj, .off, .stl, .glb or .gltf, or one of tets: .mesh, .msh, "
@@ -82,7 +83,11 @@ MeshSoup parse(const std::filesystem::path& path, std::string_view bytes, const 
 MeshSoup read_mesh(const std::filesystem::path& given)
 {
     std::filesystem::path path = given;
-    if (path.extension() == ".node") path.replace_extension(".ele");
+    std::error_code ignored; // then the points have no tets
+    if (path.extension() == ".node")
+        if (const auto tets = std::filesystem::path(path).replace_extension(".ele");
+            std::filesystem::exists(tets, ignored))
+            path = tets;
     const std::string bytes = read_bytes(path);
     const std::string extension = lower_case(path.extension().string());
     const bool has_other_files = extension == ".gltf" || extension == ".ele";

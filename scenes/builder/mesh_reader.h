@@ -30,7 +30,8 @@ inline constexpr double max_rounding = 0x1p-20;
 /// Reads PLY (ascii, binary of either byte order), OBJ, OFF (with C, N and ST prefixes, or without its keyword), STL
 /// (ascii, binary) or glTF 2.0 (.glb, or .gltf with buffers in it or in files of the same folder; its scene's meshes
 /// where its nodes put them, without skins and morph targets); or tets, whose surface is the mesh, or triangles:
-/// MEDIT's .mesh, Gmsh's .msh, TetGen's .node and .ele of one folder, legacy VTK; all but Gmsh's as text only. The
+/// MEDIT's .mesh, Gmsh's .msh, TetGen's .node and .ele of one folder, legacy VTK; all but Gmsh's as text only. A
+/// .node file without tets has those of Delaunay: a tet's region is the smallest boundary marker of its corners. The
 /// format is chosen by the extension and verified by the content; by the content alone if there is no extension. A
 /// UTF-8 byte order mark is skipped, but in STL; lines end with LF, CR LF or CR. Polygons are cut into triangles
 /// (cut_polygon) when all vertices are known. Coordinates are read as doubles and rounded to float once. Throws

@@ -130,6 +130,7 @@ void read_gltf(MeshSource& source);
 void read_medit(MeshSource& source);
 void read_gmsh(MeshSource& source);
 void read_tetgen(MeshSource& source);
+void read_points(MeshSource& source);
 void read_vtk(MeshSource& source);
 
 } // namespace tetrace

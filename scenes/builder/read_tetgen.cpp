@@ -1,5 +1,6 @@
 // TetGen's .node and .ele: https://wias-berlin.de/software/tetgen/fformats.html
 #include "core/base/files.h"
+#include "scenes/builder/delaunay.h"
 #include "scenes/builder/word_reader.h"
 
 #include <fmt/format.h>
@@ -31,18 +32,21 @@ std::int64_t read_numbered(WordReader& words, const std::string& element, std::s
     return first;
 }
 
-/// Returns the number of the first.
-std::int64_t read_nodes(MeshSource& source, std::string_view text)
+using NodeWords = std::vector<std::string_view>;
+
+/// Returns the number of the first. add: called with each line's words, and whether the last of them is a marker.
+template <class Add>
+std::int64_t read_nodes(const MeshSource& source, std::string_view text, const Add& add)
 {
     WordReader words(source, text);
     words.begin("the .node file, header");
     const std::size_t count = words.count("vertices", 8);
-    if (const auto header = words.next_words(); words.integer_of(header.front()) != 3)
+    const auto header = words.next_words();
+    if (words.integer_of(header.front()) != 3)
         words.fail(fmt::format("its points have {} dimensions", header.front()), "tets need 3: export a mesh of 3");
-    return read_numbered(words, "the .node file, vertex", count, 3,
-                         [&](std::int64_t, const std::vector<std::string_view>& line) {
-                             source.add_vertex(parse_position(source, line, 0, words.place()), words.place());
-                         });
+    const bool has_markers = header.size() > 2 && words.integer_of(header[2]) != 0;
+    return read_numbered(words, "the .node file, vertex", count, has_markers ? 4 : 3,
+                         [&](std::int64_t, const NodeWords& line) { add(words, line, has_markers); });
 }
 
 std::int64_t region_of(const WordReader& words, std::string_view word)
@@ -63,7 +67,9 @@ void read_tetgen(MeshSource& source)
     if (!text)
         source.fail("vertices", fmt::format("they are in {}, which cannot be read", nodes.filename().string()),
                     "keep FILE.node and FILE.ele in one folder");
-    const std::int64_t first = read_nodes(source, *text);
+    const std::int64_t first = read_nodes(source, *text, [&](const WordReader& words, const NodeWords& line, bool) {
+        source.add_vertex(parse_position(source, line, 0, words.place()), words.place());
+    });
     WordReader words(source, source.bytes());
     const std::size_t count = words.count("tets", 10);
     const auto header = words.next_words();
@@ -78,6 +84,27 @@ void read_tetgen(MeshSource& source)
         const std::int64_t region = line.size() > size ? region_of(words, line[size]) : 0;
         source.add_tet(indices, source.vertex_count(), {number, region}, words.place());
     });
+}
+
+void read_points(MeshSource& source)
+{
+    std::vector<Float3> points;
+    std::vector<std::int64_t> markers;
+    read_nodes(source, source.bytes(), [&](const WordReader& words, const NodeWords& line, bool has_markers) {
+        const Float3 point = to_float(parse_position(source, line, 0, words.place())); // before tets depend on it
+        source.add_vertex(to_double(point), words.place());
+        points.push_back(point);
+        markers.push_back(has_markers ? region_of(words, line.back()) : 0);
+    });
+    const std::vector<TetCorners> tets = delaunay_tets(points);
+    if (tets.empty())
+        source.fail("vertices", fmt::format("all {} lie in a plane, and tets of points need a volume", points.size()),
+                    "for a mesh, keep FILE.ele in the same folder");
+    for (std::size_t i = 0; i < tets.size(); ++i) {
+        const auto& [a, b, c, d] = tets[i];
+        const std::int64_t region = std::min({markers[a], markers[b], markers[c], markers[d]});
+        source.add_tet({a, b, c, d}, points.size(), {static_cast<std::int64_t>(i), region}, fmt::format("tet {}", i));
+    }
 }
 
 } // namespace tetrace

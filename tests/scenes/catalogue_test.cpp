@@ -49,8 +49,8 @@ TEST_F(Catalogue, has_each_name_once)
     std::set<std::string> names;
     for (const CatalogueEntry& entry : catalogue())
         EXPECT_TRUE(names.insert(entry.name).second) << entry.name;
-    for (const char* name :
-         {"cubes", "banana", "bunny", "armadillo", "atrium", "city", "terrain", "spheres", "grass", "plant", "lattice"})
+    for (const char* name : {"cubes", "banana", "bunny", "armadillo", "atrium", "city", "terrain", "spheres", "grass",
+                             "plant", "nested", "field", "lattice"})
         EXPECT_TRUE(names.contains(name)) << name;
 }
 
@@ -125,13 +125,14 @@ TEST_F(Catalogue, runs_bunny_armadillo_and_atrium_by_default)
     {
         const ScopedVariable missing("TETRACE_MESHES", folder / "none");
         EXPECT_EQ(default_scenes(), (Names{"cubes", "banana", "atrium"}));
-        EXPECT_EQ(all_scenes(), (Names{"cubes", "banana", "atrium", "city", "terrain", "spheres", "grass", "plant"}));
+        EXPECT_EQ(all_scenes(),
+                  (Names{"cubes", "banana", "atrium", "city", "terrain", "spheres", "grass", "plant", "nested"}));
     }
     const ScopedVariable given("TETRACE_MESHES", meshes);
     make_archive(archive, "x", "y");
     EXPECT_EQ(default_scenes(), (Names{"bunny", "armadillo", "atrium"}));
     EXPECT_EQ(all_scenes(), (Names{"cubes", "banana", "bunny", "armadillo", "atrium", "city", "terrain", "spheres",
-                                   "grass", "plant"}));
+                                   "grass", "plant", "nested"}));
     const ScopedVariable no_builder("TETRACE_BUILDER", folder / "none");
     EXPECT_EQ(default_scenes(), (Names{"bunny", "armadillo"}));
 }

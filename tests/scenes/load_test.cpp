@@ -124,8 +124,9 @@ TEST_F(Load, refuses_a_name_that_is_neither_row_nor_file)
     request.name = "bunni";
     const std::string error = error_of([&] { (void)load(); });
     EXPECT_TRUE(contains(error, "usage: scene bunni"));
-    EXPECT_TRUE(
-        contains(error, "cubes, banana, bunny, armadillo, atrium, city, terrain, spheres, grass, plant, lattice"));
+    EXPECT_TRUE(contains(
+        error,
+        "cubes, banana, bunny, armadillo, atrium, city, terrain, spheres, grass, plant, nested, field, lattice"));
     request.name = folder.path().string();
     EXPECT_TRUE(contains(error_of([&] { (void)load(); }), "invalid_input: reading mesh"));
     write_file(mesh, "");

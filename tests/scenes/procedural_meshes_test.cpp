@@ -17,7 +17,7 @@ namespace {
 std::vector<CatalogueEntry> procedural_rows()
 {
     std::vector<CatalogueEntry> rows = catalogue();
-    std::erase_if(rows, [](const CatalogueEntry& row) { return !row.procedural; });
+    std::erase_if(rows, [](const CatalogueEntry& row) { return row.source != SceneSource::procedural; });
     return rows;
 }
 
@@ -100,6 +100,9 @@ TEST(ProceduralMeshes, are_closed_or_open_as_they_say)
     EXPECT_EQ(edges_with(spheres, 2), spheres.triangles.size() * 3 / 2) << "each edge has two triangles";
     EXPECT_EQ(spheres.vertices.size(), spheres.triangles.size() / 2 + 2 * 1000) << "Euler, 1,000 times";
     EXPECT_EQ(edges_with(make_terrain(20'000), 1), 4 * 100u) << "open at its sides only";
+    const TriangleMesh nested = make_nested(20'000);
+    EXPECT_EQ(edges_with(nested, 2), nested.triangles.size() * 3 / 2);
+    EXPECT_EQ(nested.vertices.size(), nested.triangles.size() / 2 + 2 * 4) << "a cube and three spheres";
     const TriangleMesh grass = make_grass(30'512);
     EXPECT_EQ(edges_with(grass, 1), 5 * 10'000u + 4 * 16u) << "around each blade, and around the floor";
     const TriangleMesh plant = make_plant(20'000);
@@ -113,8 +116,12 @@ TEST(ProceduralMeshes, are_closed_or_open_as_they_say)
 TEST(ProceduralMeshes, have_the_usual_sizes_that_their_descriptions_state)
 {
     EXPECT_EQ(make_grass(68'012).triangles.size(), 3 * 22'500u + 512);
-    for (const auto& [name, triangles] : std::map<std::string, double>{
-             {"atrium", 60'000}, {"city", 80'000}, {"terrain", 180'000}, {"spheres", 128'000}, {"plant", 41'000}})
+    for (const auto& [name, triangles] : std::map<std::string, double>{{"atrium", 60'000},
+                                                                       {"city", 80'000},
+                                                                       {"terrain", 180'000},
+                                                                       {"spheres", 128'000},
+                                                                       {"plant", 41'000},
+                                                                       {"nested", 30'000}})
         EXPECT_NEAR(static_cast<double>(find_in_catalogue(name)->procedural->usual().triangles.size()), triangles,
                     0.01 * triangles)
             << name;
@@ -129,6 +136,9 @@ TEST(ProceduralMeshes, are_the_same_bits_everywhere)
     EXPECT_EQ(hash_of_mesh(make_spheres(20'000)), "3750e6862406729c");
     EXPECT_EQ(hash_of_mesh(make_grass(20'000)), "f18ed7f99c7e0457");
     EXPECT_EQ(hash_of_mesh(make_plant(20'000)), "e0c04c1d6e0fbe7f");
+    EXPECT_EQ(hash_of_mesh(make_nested(20'000)), "08994c41de3bd5a5");
+    const std::string field = make_field(2'000);
+    EXPECT_EQ(hash_text(hash_of(field)), "a78ed8113095216f");
 }
 
 TEST(ProceduralMeshes, are_named_with_a_number_in_their_range)
@@ -136,6 +146,9 @@ TEST(ProceduralMeshes, are_named_with_a_number_in_their_range)
     EXPECT_EQ(find_procedural("city@5000")->triangles, 5'000u);
     EXPECT_EQ(find_procedural("city@5000")->entry.name, "city");
     EXPECT_EQ(find_procedural("city")->triangles, std::nullopt);
+    EXPECT_EQ(find_procedural("field@5000")->triangles, 5'000u);
+    EXPECT_EQ(error_of([] { (void)find_procedural("field@5"); }),
+              "usage: scene field@5: after the @ must be the number of its points, 100 to 4000000");
     for (const char* const other : {"bunny", "bunny@5000", "cubes@5", "cityscape", "lattice:5", "town@5000"})
         EXPECT_FALSE(find_procedural(other)) << other;
     for (const CatalogueEntry& row : procedural_rows())

@@ -140,6 +140,41 @@ TEST_F(TetFiles, of_all_formats_have_the_same_tets_numbers_and_regions)
     expect_two(read_mesh(folder_ / "a.node"), 1, 2);
 }
 
+TEST_F(TetFiles, of_points_alone_have_delaunays_tets_with_the_smallest_marker_of_their_corners)
+{
+    std::string text = "40 3 0 1\n";
+    std::vector<Double3> points;
+    for (std::size_t i = 0; i < 40; ++i) {
+        const auto digit = [&](std::size_t factor) { return static_cast<double>(i * factor % 41) / 8; };
+        points.push_back({digit(5), digit(17), digit(29)});
+        text += fmt::format("{} {} {} {} {}\n", i, points[i].x, points[i].y, points[i].z, i % 3);
+    }
+    const auto file = write("points.node", text);
+    const MeshSoup soup = read_mesh(file);
+    ASSERT_GE(soup.tets.size(), 60u);
+    double volume = 0;
+    for (std::size_t i = 0; i < soup.tets.size(); ++i) {
+        const auto at = [&](std::size_t k) { return to_double(soup.mesh.vertices[soup.tets[i].at(k)]); };
+        const Double3 a = at(1) - at(0), b = at(2) - at(0), c = at(3) - at(0);
+        const double six = dot(cross(a, b), c);
+        ASSERT_GT(six, 0) << "positive";
+        volume += six / 6;
+        const Double3 centre =
+            (cross(b, c) * dot(a, a) + cross(c, a) * dot(b, b) + cross(a, b) * dot(c, c)) * (0.5 / six);
+        std::int32_t least = 2;
+        for (std::size_t p = 0; p < points.size(); ++p) {
+            EXPECT_GE(length(points[p] - at(0) - centre), length(centre) * (1 - 1e-9)) << "in the sphere of tet " << i;
+            for (std::size_t k = 0; k < 4; ++k)
+                if (points[p] == at(k)) least = std::min(least, static_cast<std::int32_t>(p % 3));
+        }
+        EXPECT_EQ(soup.source_tets[i].region, least);
+    }
+    const Scene scene = build(file);
+    expect_sound(scene);
+    EXPECT_EQ(scene.source_tets, soup.source_tets);
+    expect_error("flat.node", "4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 1 1 0\n", {"all 4 lie in a plane"});
+}
+
 TEST_F(TetFiles, that_are_damaged_are_refused_with_place_and_line)
 {
     const auto changed = [](std::string text, const std::string& what, const std::string& into) {
