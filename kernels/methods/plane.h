@@ -5,13 +5,16 @@
 #ifndef TETRACE_KERNELS_METHODS_PLANE_H
 #define TETRACE_KERNELS_METHODS_PLANE_H
 
+#define TAKES_LINES
+#define FINDS_NO_EXIT
+
 #include KERNEL_LAYOUT_HEADER
 #include "kernels/layouts/faces.h"
 #include "kernels/methods/edge_sides.h"
 #include "kernels/ray.h"
 
 // A face's plane is met at distance / approach along the ray; approach is positive where the ray leaves the tet there.
-STRUCT(Crossing)
+STRUCT(PlaneCrossing)
 {
     uint face;
     real distance;
@@ -24,7 +27,7 @@ STRUCT(Crossing)
 
 // Quotients compared by products, since APIs divide differently. Approaches that are compared are positive; a face
 // without a competitor is nearest.
-KERNEL_FN Crossing nearer(Crossing nearest, Crossing next)
+KERNEL_FN PlaneCrossing nearer(PlaneCrossing nearest, PlaneCrossing next)
 {
     if (next.approach <= real(0.0f)) return nearest;
     if (nearest.face == NO_EXIT) return next;
@@ -36,10 +39,10 @@ KERNEL_FN Crossing nearer(Crossing nearest, Crossing next)
 
 // The plane through `point` with the directions a and b; a x b points out of the tet. offset: from the ray's origin to
 // the point.
-KERNEL_FN Crossing crossing(Ray ray, uint face, Vec3 offset, Vec3 a, Vec3 b)
+KERNEL_FN PlaneCrossing crossing(Ray ray, uint face, Vec3 offset, Vec3 a, Vec3 b)
 {
     Vec3 normal = cross3(a, b);
-    Crossing found;
+    PlaneCrossing found;
     found.face = face;
     found.distance = real(0.0f);
     found.approach = dot3(normal, ray.direction);
@@ -47,9 +50,9 @@ KERNEL_FN Crossing crossing(Ray ray, uint face, Vec3 offset, Vec3 a, Vec3 b)
     return found;
 }
 
-KERNEL_FN Crossing no_crossing()
+KERNEL_FN PlaneCrossing no_crossing()
 {
-    Crossing none;
+    PlaneCrossing none;
     none.face = NO_EXIT;
     none.distance = real(0.0f);
     none.approach = real(0.0f);
@@ -64,7 +67,7 @@ KERNEL_FN uint exit_face(SceneView scene, uint tet, uint entry, Ray ray)
     Vec3 e1 = sub3(vertex(scene, tet, corner(entry, 1u)), apex);
     Vec3 e2 = sub3(vertex(scene, tet, corner(entry, 2u)), apex);
     Vec3 offset = sub3(apex, ray.origin);
-    Crossing nearest = nearer(no_crossing(), crossing(ray, corner(entry, 2u), offset, e0, e1));
+    PlaneCrossing nearest = nearer(no_crossing(), crossing(ray, corner(entry, 2u), offset, e0, e1));
     nearest = nearer(nearest, crossing(ray, corner(entry, 0u), offset, e1, e2));
     nearest = nearer(nearest, crossing(ray, corner(entry, 1u), offset, e2, e0));
     return nearest.face;
@@ -72,7 +75,7 @@ KERNEL_FN uint exit_face(SceneView scene, uint tet, uint entry, Ray ray)
 
 KERNEL_FN uint start_face(SceneView scene, uint tet, Ray ray)
 {
-    Crossing nearest = no_crossing();
+    PlaneCrossing nearest = no_crossing();
     for (uint face = 0u; face < 4u; ++face) {
         Vec3 c0 = vertex(scene, tet, corner(face, 0u));
         Vec3 a = sub3(vertex(scene, tet, corner(face, 2u)), c0);

@@ -7,6 +7,8 @@
 #include "kernels/layouts/faces.h"
 #include "kernels/methods/edge_sides.h"
 
+#define FINDS_NO_EXIT
+
 // A face is the exit if none of its three edges has the ray on its entering side. The three candidates are tested in
 // turn, each until an edge rejects it. No edge is tested twice.
 KERNEL_FN uint exit_face(SceneView scene, uint tet, uint entry, Ray ray)

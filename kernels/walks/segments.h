@@ -177,7 +177,7 @@ KERNEL_FN Exit exit_from_face(SceneView scene, Ray ray, uint half_face)
 // sums: to which each tet's length is added, or NO_SUMS. absorbs: for task absorb; without sums. direction, origin: the
 // ray's quads. Walks from inside begin anew as those to a hit do (docs/spec/project.md, P6 and P8), but not if they are
 // absorbed before that is tested. Other walks than those along paths cannot begin anew: they are lost where they are
-// found in a circle (walk_by_neighbours.h).
+// found in a circle (walk_by_neighbours.h), or where their method finds no exit.
 KERNEL_FN Segments cross_tets(SceneView scene, TraceParams params, LENGTH_SUMS sums, bool absorbs, uint4 direction,
                               uint4 origin)
 {
@@ -216,6 +216,9 @@ KERNEL_FN Segments cross_tets(SceneView scene, TraceParams params, LENGTH_SUMS s
                 half_face = opposite_half_face(scene, at.tet, at.face);
                 if (half_face == NO_HALF_FACE || at.sum.crossings >= pause || is_absorbed(absorbs, at)) break;
                 at = entering_tet(scene, ray, half_face, at);
+#ifdef FINDS_NO_EXIT
+                if (at.face == NO_EXIT) break;
+#endif
             }
         }
         if (is_absorbed(absorbs, at)) half_face = NO_HALF_FACE;
@@ -236,6 +239,9 @@ KERNEL_FN Segments cross_tets(SceneView scene, TraceParams params, LENGTH_SUMS s
             if (ahead == NO_HALF_FACE) break;
         }
 #else
+#ifdef FINDS_NO_EXIT
+        if (at.face == NO_EXIT) break;
+#endif
         uint steps = at.sum.crossings;
         if (half_face == NO_HALF_FACE || half_face == saved || steps >= params.max_steps) break;
         pause = steps + 1u;
@@ -243,6 +249,13 @@ KERNEL_FN Segments cross_tets(SceneView scene, TraceParams params, LENGTH_SUMS s
         at = entering_tet(scene, ray, half_face, at);
 #endif
     }
+#ifdef FINDS_NO_EXIT
+    if (at.face == NO_EXIT) {
+        at.sum.first = LOST;
+        at.sum.total = at.farthest - at.begin;
+        return at.sum;
+    }
+#endif
     if (at.sum.crossings == 0u) return no_segments(absorbs);
     at.sum.total = absorbs ? at.absorption.light : at.farthest - at.begin;
     at.sum.reversed = absorbs ? at.absorption.transmittance : at.sum.reversed;

@@ -130,6 +130,25 @@ TEST(Segments, of_chords_are_neither_lost_nor_wrong_by_maria)
         expect_all_right(Method::maria, {Layout::tet96}, scene, name);
 }
 
+// Their walks are judged, not trusted: a ray that is lost or wrong is a number, and ends.
+TEST(Segments, of_other_programs_rules_get_chords_right_and_some_hard_rays_wrong)
+{
+    for (const Method method : {Method::plane, Method::plucker}) {
+        Verdicts chords, hard;
+        for (const auto& [name, scene] : make_hard_scenes()) {
+            const CrossedScene tets(scene, method, Layout::tet80);
+            for (Verdicts* const verdicts : {&chords, &hard}) {
+                const RaySet set = verdicts == &hard ? hard_ray_set(scene, 0, 4096) : rays_for(method, scene, 0, 4096);
+                verdicts->add(tets.judged(set, tets.answers(set), tets.walks(set)));
+            }
+        }
+        EXPECT_LT(chords.wrong + chords.lost, chords.rays / 100) << name_of(method);
+        EXPECT_GT(hard.wrong + hard.lost, method == Method::plucker ? hard.rays / 100 : 0u) << name_of(method);
+        fmt::print("{}: {} wrong and {} lost of {} chords; {} and {} of {} hard rays\n", name_of(method), chords.wrong,
+                   chords.lost, chords.rays, hard.wrong, hard.lost, hard.rays);
+    }
+}
+
 TEST(Segments, a_circle_is_found_long_before_the_cap)
 {
     const Scene scene = make_cubes(2);
