@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/judging/npy.h"
+#include "bench/results/npy.h"
 #include "bench/truth/nearest.h"
 #include "core/base/enum_names.h"
 #include "core/mesh/triangle_mesh.h"

@@ -95,6 +95,22 @@ std::optional<RowKey> reference_of(const RowKey& key)
     return reference_row(key);
 }
 
+std::function<CrossedTets(std::size_t)> walks_of(const RowRun& row, std::size_t view)
+{
+    openmp::NoteFunction* const note = openmp::find_note_function(row.key.kernel);
+    if (note == nullptr) throw Error(ErrorKind::internal, "openmp notes no crossings of " + row_name(row.key));
+    SceneWork& scene = *row.scene;
+    const PackedScene& packed = row.packed->data;
+    const std::vector<Quad>& quads = scene.given_rays().rows(scene, row.key, &packed, view);
+    const std::uint32_t cap = step_cap(scene.counts().tets, row.device);
+    const bool absorbs = traits_of(row.key.kernel.task).absorbs;
+    return [note, absorbs, cap, &packed, &quads](std::size_t ray) {
+        openmp::Crossings noted;
+        note(packed, absorbs, quads[ray], quads[quads.size() / GIVEN_RAY_QUADS + ray], cap, noted);
+        return CrossedTets{std::move(noted.tets), std::move(noted.places)};
+    };
+}
+
 /// The same steps for each row and view.
 class Verifier::Parts {
 public:
@@ -194,22 +210,6 @@ private:
                                         formula);
         return oracle_.judge(scene_->view_numbers()[view], scene_->views()[view], scene_->width(), scene_->height(),
                              hits, formula);
-    }
-
-    /// openmp's walk of each ray, tet by tet: the claim that the answers are judged by.
-    std::function<CrossedTets(std::size_t)> walks_of(const RowRun& row, std::size_t view)
-    {
-        openmp::NoteFunction* const note = openmp::find_note_function(row.key.kernel);
-        if (note == nullptr) throw Error(ErrorKind::internal, "openmp notes no crossings of " + row_name(row.key));
-        const PackedScene& packed = row.packed->data;
-        const std::vector<Quad>& quads = scene_->given_rays().rows(*scene_, row.key, &packed, view);
-        const std::uint32_t cap = step_cap(scene_->counts().tets, row.device);
-        const bool absorbs = traits_of(row.key.kernel.task).absorbs;
-        return [note, absorbs, cap, &packed, &quads](std::size_t ray) {
-            openmp::Crossings noted;
-            note(packed, absorbs, quads[ray], quads[quads.size() / GIVEN_RAY_QUADS + ray], cap, noted);
-            return CrossedTets{std::move(noted.tets), std::move(noted.places)};
-        };
     }
 
     Verdicts judge_walks(const RowRun& row, std::size_t view)

@@ -2,6 +2,7 @@
 
 #include "bench/rows/row_run.h"
 #include "bench/rows/row_tracing.h"
+#include "bench/truth/crossings.h"
 
 #include <cstddef>
 #include <functional>
@@ -25,6 +26,10 @@ struct SeenImage {
 
 /// openmp's row that the row must agree with; empty if there is nothing to compare with.
 [[nodiscard]] std::optional<RowKey> reference_of(const RowKey& key);
+
+/// openmp's walk of each ray of a view (an index in SceneWork::views()), tet by tet, for a row of a task that crosses
+/// tets. The row, and its scene, must outlive it. Throws Error{internal} if openmp has no such kernel.
+[[nodiscard]] std::function<CrossedTets(std::size_t)> walks_of(const RowRun& row, std::size_t view);
 
 /// One scene's verification, image by image, for callers that visit the images in their own order.
 class Verifier {

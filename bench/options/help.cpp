@@ -102,15 +102,17 @@ const VerbHelp verb_help[] = {
      "  tetrace check --defects --stress --junit defects.xml\n"
      "  tetrace check --scene bunny --camera-set flight --views 0-1281:40 --out check.json\n"},
     {Verb::render, "write pictures",
-     "Traces the selected views and writes a picture of each: the surface shaded by its normals, or the steps of each "
-     "ray in false colour with a scale bar, side by side for several kinds of tets. The pictures are made by the "
-     "first selected row of each scene.\n\n"
+     "Traces the selected views and writes a picture of each: the surface shaded by its normals, or in false colour "
+     "the "
+     "steps of each ray, the tets that it crosses, or the light of a medium, side by side for several kinds of tets. "
+     "The pictures are made by the first selected row of each scene.\n\n"
      "The file of --out ends in .png, .exr or .ppm. With several pictures, scene, view and kind are inserted before "
      "the extension. If it is a folder, the pictures in it are named SCENE-VIEW-KIND.png, or .ppm if OpenImageIO is "
      "missing (PPM needs no library).",
      "  tetrace render --scene bunny --views 0 --out bunny.png\n"
      "  tetrace render --scene armadillo --picture normals,steps --size 512\n"
-     "  tetrace render --scene bunny --tets cdt,rays --picture steps --views 0 --out steps.png\n"},
+     "  tetrace render --scene bunny --tets cdt,rays --picture steps --views 0 --out steps.png\n"
+     "  tetrace render --scene field --picture crossings,light --views 0\n"},
     {Verb::reproduce, "regenerate the paper's tables and figures",
      "Regenerates the evaluation of Maria, Horna, Aveneau, \"Efficient Ray Traversal of Constrained Delaunay "
      "Tetrahedralization\" (GRAPP 2017), on every device that is here. The paper's numbers are printed next to ours, "
@@ -140,6 +142,9 @@ const VerbHelp verb_help[] = {
      "of a ray alone, and of a full device, for random rays through lattices of 1 MB to 4 GB, with a figure per "
      "device. It is run by itself and measures as 'bench' does. Scenes that memory or --budget has no room for are "
      "left out, with the reason.\n\n"
+     "volume: all tets of a ray, the sums of lengths per tet, and light (docs/volume.md), on every device, with one "
+     "thread and with all: whether hashes and sums are equal, what the lengths of uniform lines are by integral "
+     "geometry, and how many rays each method loses. It is run by itself and measures as 'bench' does.\n\n"
      "figure6: time over tets traversed, one point per view, their correlation, and pictures of the two extreme "
      "views.\n\n"
      "Timing: each view, and each batch of searches, has a launch of its own, as in the paper's frames per second. "
@@ -157,6 +162,7 @@ const VerbHelp verb_help[] = {
      "  tetrace reproduce table5 --searches 1000x16384 --backend openmp,cuda\n"
      "  tetrace reproduce rivals --out rivals.json    15 minutes on two cores; with --scene bunny, 3\n"
      "  tetrace reproduce ladder --size 1024 --out ladder.json\n"
+     "  tetrace reproduce volume --out volume.json\n"
      "  tetrace reproduce --backend openmp --layout tet80 --out all.json --resume\n"},
     {Verb::inspect, "show what real GPU compilers make of the kernels",
      "Compiles every entry point of the selected kernels for GPUs that need not be here, and prints what the "

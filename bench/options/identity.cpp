@@ -168,9 +168,9 @@ std::vector<std::filesystem::path> named_paths(const Options& options)
     std::vector<std::filesystem::path> paths(options.scenes.begin(), options.scenes.end());
     paths.insert(paths.end(), options.files.begin(), options.files.end());
     paths.insert(paths.end(), options.expected.begin(), options.expected.end());
-    for (const auto* path :
-         {&options.out, &options.junit, &options.picture_folder, &options.code_folder, &options.write_expected,
-          &options.chart_folder, &options.portability_csv, &options.ray_file, &options.hit_file})
+    for (const auto* path : {&options.out, &options.junit, &options.picture_folder, &options.array_folder,
+                             &options.code_folder, &options.write_expected, &options.chart_folder,
+                             &options.portability_csv, &options.ray_file, &options.hit_file})
         if (*path) paths.push_back(**path);
     if (options.own_cameras) paths.emplace_back(options.own_cameras->file);
     constexpr std::string_view out = "--benchmark_out=";

@@ -89,11 +89,11 @@ std::vector<OptionRow> scene_options()
          "A name from the catalogue ('tetrace scenes' lists it), a mesh file (PLY, OBJ, OFF, STL, glTF; of "
          "tets MEDIT, Gmsh, TetGen, VTK), a pipe of one, or a .tet file. May be repeated, or a list with commas. 'all' "
          "is every available scene of the catalogue "
-         "except "
-         "lattice. NAME-1 is NAME as it was first pinned, the same in "
+         "except lattice and field. NAME-1 is NAME as it was first pinned, the same in "
          "every version of tetrace. NAME@N has about N triangles; the name can be " +
-             scene_names([](const CatalogueEntry& scene) { return scene.procedural.has_value(); }) +
-             ". lattice:N has 6 N^3 tets, for example 2 GB in layout half32 with N = 138. Default: bunny-1, "
+             scene_names([](const CatalogueEntry& scene) { return scene.source == SceneSource::procedural; }) +
+             ". field@N has N points. lattice:N has 6 N^3 tets, for example 2 GB in layout half32 with N = 138. "
+             "Default: bunny-1, "
              "armadillo-1 and atrium-1; cubes, banana and atrium-1 if the first two are missing.",
          building, true, append_scenes(), usual_for(every_verb, "a name of 'tetrace scenes', a mesh file, or all")},
         {"Scenes", "--repair", "",
@@ -261,8 +261,8 @@ std::vector<OptionRow> ray_options()
              scene_names([](const CatalogueEntry& scene) { return !scene.views.empty(); }) +
              "; 'smoke', 4 views at 2 radii, in which a closed object fills a sixth of the "
              "image; 'orbit', 1,282 views on a sphere of 2 radii; 'flight', 1,282 views from 1.2 to 2.9 radii; or a "
-             ".json file with your own cameras (docs/cameras.md). Default: frame; for 'reproduce', except for rivals "
-             "and ladder, flight.",
+             ".json file with your own cameras (docs/cameras.md). Default: frame; for 'reproduce', except for "
+             "rivals, ladder and volume, flight.",
          with_rays, false, set_cameras(), usual_for(~(sharing | bit(Verb::dump)), "views: {}, or a .json file")},
         {"Rays", "--views", "LIST",
          "Views of the camera set, numbered from 0: numbers, ranges and strides, for example 0,3,10-20 or "
@@ -273,7 +273,7 @@ std::vector<OptionRow> ray_options()
         {"Rays", "--size", "WxH",
          "Image size in pixels, one ray each; N means NxN. 'bench' accepts a list, for example 256,512,1024, and "
          "measures each row at each size. Default: 1024x1024; for 'check', 'trace', 'dump' and 'page' 256x256, for "
-         "'reproduce rivals' and 'ladder' 512x512.",
+         "'reproduce rivals' and 'ladder' 512x512, for 'reproduce volume' 64x64.",
          with_rays, true,
          [](Options& o, const std::string& v) {
              std::tie(o.width, o.height) = parse_size("--size", v);
@@ -333,7 +333,8 @@ std::vector<OptionRow> judging_options()
          "repeatedly for --sample-time. Of 'reproduce' for each row and view, or batch of searches. Fewer than 5 give "
          "no interval, here and in 'compare'. Default: 10, and up to three times as many for rows that are noisy, "
          "while --budget "
-         "lasts (not with --runs, nor with Google Benchmark's output); of 'reproduce' 5, except for rivals and ladder.",
+         "lasts (not with --runs, nor with Google Benchmark's output); of 'reproduce' 5, except for rivals, "
+         "ladder and volume (3).",
          bit(Verb::bench) | bit(Verb::reproduce), false,
          [](Options& o, const std::string& v) {
              set_count("--samples", &Options::samples, 3, 10000)(o, v);
@@ -350,7 +351,7 @@ std::vector<OptionRow> judging_options()
          "followed by s, up to a minute. A GPU traces all views in less than a millisecond, too short for its "
          "clocks to settle. Passes follow each other without the host, and rates are per pass. 0: a sample is one "
          "pass. Default: 0.1; of 'reproduce', which takes samples of each of up to 1,282 views, 0.005, except for "
-         "rivals and ladder.",
+         "rivals, ladder and volume (0).",
          bit(Verb::bench) | bit(Verb::reproduce), false,
          [](Options& o, const std::string& v) { o.sample_s = parse_sample_time(v); }},
         {"Measuring", "--budget", "TIME",
@@ -398,8 +399,10 @@ std::vector<OptionRow> judging_options()
          bit(Verb::compare), false, set(&Options::allow_missing),
          usual_for(every_verb, "rows that B lacks do not fail")},
         {"Pictures", "--picture", "KIND",
-         "'normals', the surface shaded by its normals, or 'steps', the steps of each ray in false colour with a scale "
-         "bar. Default: normals.",
+         "'normals', the surface shaded by its normals; or, in false colour with a scale bar: 'steps' of each ray to "
+         "its "
+         "hit; 'crossings', all tets that it crosses; 'depth', the optical depth of a medium, and 'light', what it "
+         "emits (docs/volume.md). Default: normals.",
          bit(Verb::render), true, append("--picture", &Options::pictures), usual_for(every_verb, "what is shown: {}")},
         {"Pictures", "--differences", "FOLDER",
          "Write a picture of each view in which a row differs from openmp, with the differing pixels marked: PNG, or "

@@ -193,11 +193,12 @@ void check_together(const Options& options)
     if (options.verb == Verb::dump) check_dump(options);
 }
 
-/// `reproduce rivals` and `ladder` are runs of `bench` over given rows; the other tables are of views one after the
-/// other. The ladder's rays are random and do not depend on cameras.
+/// `reproduce rivals`, `ladder` and `volume` are runs of `bench` over given rows; the other tables are of views one
+/// after the other. Rays of the last two are random and do not depend on cameras.
 constexpr std::string_view only_of_rivals[] = {"--runs"};
 constexpr std::string_view not_of_bench_runs[] = {"--builds", "--searches", "--shard", "--wait"};
 constexpr std::string_view not_of_ladder[] = {"--resume", "--camera-set", "--views"};
+constexpr std::string_view not_of_volume[] = {"--resume", "--camera-set"};
 
 void check_bench_runs(const Options& options, const CLI::App& app)
 {
@@ -218,6 +219,8 @@ void check_bench_runs(const Options& options, const CLI::App& app)
         reject(not_of_bench_runs, fmt::format("is not for 'reproduce {}', which is one run of one process", name));
     if (is_any && *target == PaperTarget::ladder)
         reject(not_of_ladder, "is not for 'reproduce ladder', which is short and traces random rays");
+    if (is_any && *target == PaperTarget::volume)
+        reject(not_of_volume, "is not for 'reproduce volume', which is short and crosses tets on random rays");
 }
 
 /// A verb's defaults.
@@ -281,6 +284,18 @@ Options defaults_of_ladder()
     return options;
 }
 
+/// The same, for two views, and less per row: there are many, and their answers matter more than their rates.
+Options defaults_of_volume()
+{
+    Options options = defaults_of_ladder();
+    options.views = "0,1";
+    options.width = options.height = 64;
+    options.samples = 3;
+    options.sample_s = 0;
+    options.budget_s = std::numeric_limits<double>::infinity();
+    return options;
+}
+
 /// The main job has three scenes: two views of each take as long as four views of two did.
 void choose_default_views(Options& options)
 {
@@ -328,6 +343,7 @@ Options parse_verb(Verb verb, const std::vector<std::string>& arguments)
     }
     if (asks_for(PaperTarget::rivals, verb, app)) options = defaults_of_rivals();
     if (asks_for(PaperTarget::ladder, verb, app)) options = defaults_of_ladder();
+    if (asks_for(PaperTarget::volume, verb, app)) options = defaults_of_volume();
     for (const OptionRow& row : option_table())
         if (takes(verb, row)) apply_row(options, row, app);
     if (verb == Verb::reproduce) check_bench_runs(options, app);

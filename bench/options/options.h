@@ -50,22 +50,24 @@ enum class Format { table, json, csv, markdown };
 template <>
 inline constexpr auto enum_names<Format> = names_up_to<Format::markdown>("table", "json", "csv", "markdown");
 
-/// A picture that `render` writes.
-enum class Picture { normals, steps };
+/// A picture that `render` writes: of hits; or, from crossings on, of all tets of each ray.
+enum class Picture { normals, steps, crossings, depth, light };
 template <>
-inline constexpr auto enum_names<Picture> = names_up_to<Picture::steps>("normals", "steps");
+inline constexpr auto enum_names<Picture> = names_up_to<Picture::light>("normals", "steps", "crossings", "depth",
+                                                                        "light");
 
-/// A table or a figure of the paper that `reproduce` measures again. Two are not in the paper: rivals, our own
-/// claims about tets and BVHs, and ladder, what a step costs by the size of a scene.
-enum class PaperTarget { table3, table4, table5, table6, figure6, rivals, ladder };
+/// A table or a figure of the paper that `reproduce` measures again. Three are not in the paper: rivals, our own
+/// claims about tets and BVHs; ladder, what a step costs by the size of a scene; and volume, all tets of a ray.
+enum class PaperTarget { table3, table4, table5, table6, figure6, rivals, ladder, volume };
 template <>
-inline constexpr auto enum_names<PaperTarget> = names_up_to<PaperTarget::ladder>("table3", "table4", "table5", "table6",
-                                                                                 "figure6", "rivals", "ladder");
+inline constexpr auto enum_names<PaperTarget> = names_up_to<PaperTarget::volume>("table3", "table4", "table5", "table6",
+                                                                                 "figure6", "rivals", "ladder",
+                                                                                 "volume");
 
 /// Whether it is measured as `bench` measures, all views together, and by itself.
 [[nodiscard]] constexpr bool is_bench_run(PaperTarget target)
 {
-    return target == PaperTarget::rivals || target == PaperTarget::ladder;
+    return target == PaperTarget::rivals || target == PaperTarget::ladder || target == PaperTarget::volume;
 }
 
 /// A build of a scene that `reproduce` traces: a CDT as the options ask for, one as near to the paper's counts as
@@ -199,6 +201,7 @@ struct Options {
     std::vector<Picture> pictures;
     std::optional<std::filesystem::path> junit;          ///< of `check`
     std::optional<std::filesystem::path> picture_folder; ///< of `check`: pictures of the differences
+    std::optional<std::filesystem::path> array_folder;   ///< of `bench` and `check`: verified answers as .npy files
 
     std::vector<std::filesystem::path> report_pictures;   ///< of `report`: PNG files
     std::optional<std::filesystem::path> chart_folder;    ///< of `report`: for the charts as SVG files

@@ -57,6 +57,11 @@ std::vector<OptionRow> output_options()
          "tetrace.html.",
          reporting | bit(Verb::render) | bit(Verb::report) | bit(Verb::page) | bit(Verb::dump) | bit(Verb::rays), false,
          set_out(), usual_for(every_verb, "where to write; -o is short for it")},
+        {"Output", "--out-arrays", "FOLDER",
+         "Write the verified answers as .npy files of NumPy, one for each row and view, and for task tally one with "
+         "the "
+         "sums of the tets (docs/volume.md). Default: none.",
+         measuring, false, set_path("--out-arrays", &Options::array_folder)},
         {"Output", "--columns", "LIST",
          "Print only these columns, after the first one, in the tables that have them, named as in CSV and JSON: "
          "mrays_per_s,spread. An unknown name prints the list of valid ones. Default: all, or on a terminal the "

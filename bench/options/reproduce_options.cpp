@@ -8,7 +8,7 @@ std::vector<OptionRow> reproduce_options()
     return {
         {"Tables", "TABLE", "LIST",
          "The tables and figures to regenerate: " + join_names(values_of<PaperTarget>()) +
-             ". Default: all except rivals and ladder, which are not in the paper and are run by themselves.",
+             ". Default: all except rivals, ladder and volume, which are not in the paper and are run by themselves.",
          bit(Verb::reproduce), true, append("reproduce", &Options::targets),
          usual_for(every_verb, "what to regenerate: {}")},
         {"Tables", "--builds", "LIST",

@@ -1,5 +1,8 @@
 #include "bench/pictures/false_colour.h"
 
+#include "core/rays/absorbed.h"
+#include "core/rays/segments.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -147,9 +150,10 @@ Colour colour_of(const Hit& hit, std::uint32_t end)
     return hit.steps == 0 ? Colour{} : false_colour(static_cast<double>(hit.steps) / end);
 }
 
-std::string title_of(const std::string& subject, const StepSummary& summary)
+std::string title_of(const StepsImage& image, const StepSummary& summary)
 {
-    std::string title = fmt::format("steps per ray, {}, mean {:.1f}, max {}", subject, summary.mean, summary.most);
+    std::string title =
+        fmt::format("{}, {}, mean {:.1f}, max {}", image.what, image.subject, summary.mean, summary.most);
     if (summary.lost > 0) {
         title += fmt::format(", lost {} (magenta)", summary.lost);
     }
@@ -247,7 +251,7 @@ Pixmap draw_steps(std::span<const StepsImage> images, std::uint32_t width, std::
     std::uint32_t column = width, end = 1; // of the scale
     for (const StepsImage& image : images) {
         const StepSummary summary = summarize_steps(image.hits);
-        titles.push_back(title_of(image.subject, summary));
+        titles.push_back(title_of(image, summary));
         column = std::max(column, text_width(titles.back(), scale) + 2 * margin * scale);
         end = std::max(end, summary.top);
     }
@@ -265,6 +269,29 @@ Pixmap draw_steps(std::span<const StepsImage> images, std::uint32_t width, std::
     draw_bar(pixmap, bar);
     draw_ticks(pixmap, bar, ink);
     return pixmap;
+}
+
+const CrossedPicture* crossed_picture(Picture picture)
+{
+    static constexpr CrossedPicture crossings{Task::segments, "tets that a ray crosses",
+                                              [](const Hit& answer) { return segments_of(answer).crossings; }};
+    static constexpr CrossedPicture depth{Task::absorb, "optical depth, in tenths of a halving", [](const Hit& answer) {
+                                              const double passed =
+                                                  share_passed(std::max(1u, absorbed_of(answer).transmittance));
+                                              return static_cast<std::uint32_t>(std::lround(-10 * std::log2(passed)));
+                                          }};
+    static constexpr CrossedPicture light{Task::absorb, "light, in percent", [](const Hit& answer) {
+                                              return static_cast<std::uint32_t>(
+                                                  std::lround(100 * share_of_light(absorbed_of(answer).light)));
+                                          }};
+    switch (picture) {
+    case Picture::crossings: return &crossings;
+    case Picture::depth: return &depth;
+    case Picture::light: return &light;
+    case Picture::normals:
+    case Picture::steps: break;
+    }
+    return nullptr;
 }
 
 } // namespace tetrace

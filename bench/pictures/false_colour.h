@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bench/options/options.h"
 #include "bench/pictures/pixmap.h"
 #include "core/rays/hit.h"
 
@@ -47,8 +48,19 @@ struct StepSummary {
 struct StepsImage {
     std::vector<Hit> hits; ///< width * height, row after row
     std::string subject;
+    std::string what = "steps per ray"; ///< or what else is in the place of hits' steps
 };
 /// The same for several of them side by side: each has its own title, and all have one scale.
 [[nodiscard]] Pixmap draw_steps(std::span<const StepsImage> images, std::uint32_t width, std::uint32_t height);
+
+/// What a picture of all tets shows of a ray, as a whole number.
+struct CrossedPicture {
+    Task task;
+    const char* what;
+    std::uint32_t (*value)(const Hit& answer);
+};
+
+/// Null for pictures of hits.
+[[nodiscard]] const CrossedPicture* crossed_picture(Picture picture);
 
 } // namespace tetrace

@@ -1,6 +1,7 @@
 #include "bench/measuring/run_journal.h"
 #include "bench/measuring/scene_rows.h"
 #include "bench/merging/shard_results.h"
+#include "bench/output/array_folder.h"
 #include "bench/output/bench_report.h"
 #include "bench/terminal/interrupts.h"
 #include "bench/terminal/progress.h"
@@ -45,7 +46,7 @@ void check_resume(const Options& options, const BenchmarkFlags& flags)
 } // namespace
 
 BenchResult run_bench(const std::vector<RowKey>& keys, const Options& options, const BenchmarkFlags& flags,
-                      Journal* journal)
+                      Journal* journal, const ImageSeen& image_seen)
 {
     if (journal != nullptr) say_how_to_go_on(options);
     BenchResult result;
@@ -53,7 +54,7 @@ BenchResult run_bench(const std::vector<RowKey>& keys, const Options& options, c
     Budget budget = flags.repetitions ? Budget() : Budget(options.budget_s);
     MachineWatch watch = watch_of(host_pulse(resolved_threads(options)), journal);
     const Recording shared{journal, nullptr, &watch, &budget};
-    SceneRows run = open_and_verify(keys, options, {}, shared);
+    SceneRows run = open_and_verify(keys, options, image_seen, shared);
     result.measurement = measure_rows(run.rows, options, flags, shared);
     result.rows = records_of(run.rows);
     result.scenes = scene_records(run, options);
@@ -81,13 +82,17 @@ namespace {
 int bench(const Options& options, const BenchmarkFlags& flags, const std::vector<RowKey>& keys,
           std::vector<RowRecord>& rows, CheckJudgement& judgement)
 {
+    const auto arrays = make_array_folder(options);
     nlohmann::json head = run_head(options, keys);
     if (flags.repetitions) head["repetitions"] = *flags.repetitions;
     const auto journal = open_journal(options, head);
-    const BenchResult result = run_bench(keys, options, flags, journal.get());
+    const BenchResult result = run_bench(keys, options, flags, journal.get(), [&](const SeenImage& image) {
+        if (arrays != nullptr) arrays->see(image);
+    });
     rows = result.rows;
     judgement = judge_answers(rows);
     Report report = bench_report(result, options, result_head(options));
+    if (arrays != nullptr) report.sheet.labelled("Arrays", arrays->path().string());
     if (options.junit && !prints_junit(options)) report.sheet.labelled("JUnit", options.junit->string());
     // Google Benchmark has already written its own format to standard output, if it was asked to.
     if (!flags.format)

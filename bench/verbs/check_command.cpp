@@ -5,6 +5,7 @@
 #include "bench/measuring/run_journal.h"
 #include "bench/measuring/scene_rows.h"
 #include "bench/options/identity.h"
+#include "bench/output/array_folder.h"
 #include "bench/output/check_matrix.h"
 #include "bench/output/difference_pictures.h"
 #include "bench/output/junit.h"
@@ -23,7 +24,7 @@ namespace tetrace {
 
 namespace {
 
-/// Without pictures, expectations and their target where none were asked for.
+/// Without pictures, arrays, expectations and their target where none were asked for.
 struct Checked {
     std::optional<Expectations> expectations;
     std::optional<ExpectationTarget> target;
@@ -32,6 +33,7 @@ struct Checked {
     std::vector<nlohmann::json> scenes; ///< as results record them
     std::vector<std::string> missing;
     std::unique_ptr<DifferencePictures> pictures;
+    std::unique_ptr<ArrayFolder> arrays;
 };
 
 /// Empty if the check was interrupted.
@@ -75,6 +77,7 @@ Report check_report(const Checked& checked, const std::vector<std::filesystem::p
     if (checked.pictures != nullptr)
         for (const auto& file : checked.pictures->files())
             report.sheet.labelled("Picture", file.string());
+    if (checked.arrays != nullptr) report.sheet.labelled("Arrays", checked.arrays->path().string());
     for (const auto& file : written)
         report.sheet.labelled("Written", file.string());
     if (options.junit && !prints_junit(options)) report.sheet.labelled("JUnit", options.junit->string());
@@ -112,6 +115,7 @@ std::vector<RowRecord> verify_once(const std::vector<RowKey>& keys, const Option
     SceneRows run = open_and_verify(keys, options,
                                     [&](const SeenImage& image) {
                                         if (checked.pictures != nullptr) checked.pictures->see(image);
+                                        if (checked.arrays != nullptr) checked.arrays->see(image);
                                     },
                                     {journal, nullptr, nullptr, &budget});
     for (RowRun& row : run.rows)
@@ -156,6 +160,7 @@ int check(const Options& options, Checked& checked)
         say(sentence);
     checked.missing = missing_devices(options);
     if (options.picture_folder) checked.pictures = std::make_unique<DifferencePictures>(*options.picture_folder);
+    checked.arrays = make_array_folder(options);
     // A journal has each view once.
     const auto journal = options.repeat > 1 ? nullptr : open_journal(options, run_head(options, keys));
     if (journal != nullptr) say_how_to_go_on(options);
@@ -258,9 +263,9 @@ void require_whole_rows(const Options& options)
     if (options.repeat > 1 && options.resume)
         reject("--repeat: a journal has each view once, so repetitions cannot be resumed; leave out --resume");
     const bool has_rows = !options.defects && !options.stress;
-    if (!has_rows && (options.resume || options.picture_folder || options.allow_flawed))
-        reject("--defects and --stress run small kernels, and no rows; leave out --resume, --differences and "
-               "--allow-flawed");
+    if (!has_rows && (options.resume || options.picture_folder || options.array_folder || options.allow_flawed))
+        reject("--defects and --stress run small kernels, and no rows; leave out --resume, --differences, --out-arrays "
+               "and --allow-flawed");
     if (options.repeat > 1 && !has_rows)
         reject("--repeat repeats rows, and --defects and --stress have none; leave one of them out");
     if (options.repeat > 1 && is_shard) reject("--repeat: shards have no repetitions; leave out --shard");

@@ -31,10 +31,10 @@ int page_command(const Options& options);
 int merge_command(const Options& options);
 
 /// Opens, verifies and times the rows of `bench`, or of another run like it, and measures their devices.
-/// journal: goes on with what it has, and keeps the run's views and samples; may be null. Throws as
-/// open_and_verify() and measure_rows() do.
+/// journal: goes on with what it has, and keeps the run's views and samples; may be null. image_seen: called after each
+/// verified image. Throws as open_and_verify() and measure_rows() do.
 [[nodiscard]] BenchResult run_bench(const std::vector<RowKey>& keys, const Options& options,
-                                    const BenchmarkFlags& flags, Journal* journal);
+                                    const BenchmarkFlags& flags, Journal* journal, const ImageSeen& image_seen = {});
 
 /// Adds what follows from the rows and from the options: devices, which are measured, and comparisons. result: with
 /// all its rows, scenes and samples.

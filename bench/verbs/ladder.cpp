@@ -97,17 +97,25 @@ void append(std::vector<Pulse>& to, std::vector<Pulse> more, const std::string& 
     }
 }
 
-void append(BenchResult& to, const SceneRows& run, Measurement measured, const Options& options)
+} // namespace
+
+void append(BenchResult& to, std::vector<RowRecord> rows, const std::vector<nlohmann::json>& scenes,
+            Measurement measured, const std::string& scene)
 {
-    std::ranges::move(records_of(run.rows), std::back_inserter(to.rows));
-    std::ranges::move(scene_records(run, options), std::back_inserter(to.scenes));
+    std::ranges::move(rows, std::back_inserter(to.rows));
+    for (const nlohmann::json& record : scenes)
+        if (std::ranges::none_of(to.scenes,
+                                 [&](const nlohmann::json& known) { return known["name"] == record["name"]; }))
+            to.scenes.push_back(record);
     measured.wall_s += to.measurement.wall_s;
     measured.lowered |= to.measurement.lowered;
     std::vector<Pulse> pulses = std::move(to.measurement.pulses);
-    append(pulses, std::move(measured.pulses), scene_label(options.scenes.front()));
+    append(pulses, std::move(measured.pulses), scene);
     measured.pulses = std::move(pulses);
     to.measurement = std::move(measured);
 }
+
+namespace {
 
 /// budget_s: of this scene.
 Preparation run_scene(Ladder& ladder, const std::vector<RowKey>& rows, const Options& options, const Clock& clock,
@@ -122,7 +130,8 @@ Preparation run_scene(Ladder& ladder, const std::vector<RowKey>& rows, const Opt
     const Preparation preparation{stopwatch.seconds() - budget.spent_s(), budget.spent_s()};
     Measurement measured = measure_rows(run.rows, options, {}, shared);
     std::ranges::move(measure_lone_rays(run.rows, whole), std::back_inserter(ladder.costs));
-    append(ladder.result, run, std::move(measured), options);
+    append(ladder.result, records_of(run.rows), scene_records(run, options), std::move(measured),
+           scene_label(options.scenes.front()));
     return preparation;
 }
 

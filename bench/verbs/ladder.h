@@ -17,6 +17,11 @@ struct Ladder {
 /// each; half32, tet64 and bvh2 in one form each.
 [[nodiscard]] Options ladder_options(Options options);
 
+/// Adds a scene's rows and what was measured of them to those of other scenes. scenes: as results record them; one that
+/// the result has already is left out. scene: for the names of pulses.
+void append(BenchResult& to, std::vector<RowRecord> rows, const std::vector<nlohmann::json>& scenes,
+            Measurement measured, const std::string& scene);
+
 /// Measures scene after scene, in the order of the options: each is closed before the next is made. A scene that the
 /// machine's memory cannot hold, or for which the budget has no time, is left out; the
 /// result says why. rows: of those options.

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <map>
 #include <memory>
 
 namespace tetrace {
@@ -56,6 +57,29 @@ std::vector<Hit> trace(RowRun& row, std::size_t view)
     return hits;
 }
 
+/// The row that crosses tets for these pictures: method project's unless another is named.
+Options crossing_options(Options options, Task task)
+{
+    options.tasks = {task};
+    options.rays = {RayKind::primary};
+    if (options.methods.empty()) options.methods = {Method::project};
+    return options;
+}
+
+/// The values at the pixels, in place of a hit's steps.
+std::vector<Hit> values_at_pixels(RowRun& row, std::size_t view, const CrossedPicture& picture)
+{
+    std::vector<Hit> answers(ray_count(row, view), Hit{POISON, NO_TET, 0, 0, 0, 0});
+    static_cast<void>(trace_view(row, view, answers));
+    std::vector<Hit> pixels(row.scene->rays_per_view(), Hit{NO_HIT, NO_TET, 0, 0, 0, 0});
+    for (std::size_t ray = 0; ray < answers.size(); ++ray) {
+        Hit& pixel = pixels[pixel_of_ray(row, view, ray)];
+        pixel.face_id = answers[ray].face_id;
+        if (pixel.face_id != NO_HIT && pixel.face_id != LOST) pixel.steps = picture.value(answers[ray]);
+    }
+    return pixels;
+}
+
 void refuse_steps_without_tets(const RowRun& row, const std::vector<Picture>& pictures)
 {
     for (const Picture picture : pictures)
@@ -75,7 +99,8 @@ void tell_lost_rays(const RowRun& row, std::size_t view, std::span<const Hit> hi
 /// A scene in each kind of tets asked for, with the row that traces it. Scenes whose tets are their own are one.
 struct Subject {
     std::vector<std::unique_ptr<SceneWork>> scenes;
-    std::vector<RowRun> rows;
+    std::vector<RowRun> rows;                          ///< that find hits
+    std::map<Task, std::vector<RowRun>> crossing = {}; ///< rows of other tasks, opened when they are needed
 
     [[nodiscard]] const SceneWork& first() const { return *scenes.front(); }
 };
@@ -96,15 +121,33 @@ Subject load_subject(const std::string& name, const Options& options)
     return subject;
 }
 
+std::string title_of(const RowRun& row, std::size_t view, bool names_tets)
+{
+    std::string title = fmt::format("{}, view {}", row.scene->label(), row.scene->view_numbers()[view]);
+    if (names_tets) title += fmt::format(", {}", name_of(row.scene->loaded().scene.build.optimised.tets));
+    return title;
+}
+
+/// What each ray of the view crosses in each kind of tets.
+std::vector<StepsImage> cross_all(Subject& subject, std::size_t view, const CrossedPicture& picture,
+                                  const Options& options)
+{
+    std::vector<RowRun>& rows = subject.crossing[picture.task];
+    if (rows.empty())
+        for (const auto& scene : subject.scenes)
+            rows.push_back(open_first_row(*scene, crossing_options(options, picture.task)));
+    std::vector<StepsImage> images;
+    for (RowRun& row : rows)
+        images.push_back({values_at_pixels(row, view, picture), title_of(row, view, rows.size() > 1), picture.what});
+    return images;
+}
+
 /// The view's rays in each kind of tets.
 std::vector<StepsImage> trace_all(Subject& subject, std::size_t view)
 {
     std::vector<StepsImage> images;
     for (RowRun& row : subject.rows) {
-        std::string title = fmt::format("{}, view {}", row.scene->label(), row.scene->view_numbers()[view]);
-        if (subject.rows.size() > 1)
-            title += fmt::format(", {}", name_of(row.scene->loaded().scene.build.optimised.tets));
-        images.push_back({trace(row, view), title});
+        images.push_back({trace(row, view), title_of(row, view, subject.rows.size() > 1)});
         tell_lost_rays(row, view, images.back().hits);
     }
     return images;
@@ -126,10 +169,15 @@ void render_subject(Subject& subject, const Options& options, const PictureFiles
     for (std::size_t view = 0; view < scene.views().size(); ++view) {
         progress_line().show("rendering " + scene.label(),
                              static_cast<double>(view) / static_cast<double>(scene.views().size()));
-        const auto images = trace_all(subject, view);
-        for (const Picture picture : pictures)
+        const bool shows_hits = std::ranges::any_of(pictures, [](Picture p) { return crossed_picture(p) == nullptr; });
+        const auto images = shows_hits ? trace_all(subject, view) : std::vector<StepsImage>();
+        for (const Picture picture : pictures) {
+            const CrossedPicture* const crossed = crossed_picture(picture);
             files.write({scene.label(), scene.view_numbers()[view], picture}, only_picture,
-                        draw(picture, images, scene, view));
+                        crossed == nullptr
+                            ? draw(picture, images, scene, view)
+                            : draw_steps(cross_all(subject, view, *crossed, options), scene.width(), scene.height()));
+        }
     }
 }
 

@@ -9,6 +9,7 @@
 #include "bench/verbs/commands.h"
 #include "bench/verbs/ladder.h"
 #include "bench/verbs/reproduction.h"
+#include "bench/verbs/volume.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -188,6 +189,19 @@ int reproduce_ladder(const Options& asked, JudgedRows& judged)
     return ladder.result.interrupted ? end_interrupted() : judged.exit_code(options);
 }
 
+/// A run of `bench` for each scene and task that crosses tets.
+int reproduce_volume(const Options& options, JudgedRows& judged)
+{
+    check_output(options);
+    require_devices(options.required);
+    const Volume volume = run_volume(options);
+    judged.set(volume.result.rows);
+    deliver_besides_junit(
+        options, bench_run_report(volume.result, {volume_table(volume.result.rows), volume_lines_table(volume.lines)},
+                                  {}, options));
+    return volume.result.interrupted ? end_interrupted() : judged.exit_code(options);
+}
+
 int reproduce_paper(const Options& asked, JudgedRows& judged)
 {
     require_devices(asked.required);
@@ -232,6 +246,7 @@ int reproduce_command(const Options& options)
     const StopWhenInterrupted stop;
     JudgedRows judged;
     return with_junit(judged.rows, judged.judgement, options, [&] {
+        if (wants(options, PaperTarget::volume)) return reproduce_volume(options, judged);
         if (wants(options, PaperTarget::ladder)) return reproduce_ladder(options, judged);
         return wants(options, PaperTarget::rivals) ? reproduce_rivals(options, judged)
                                                    : reproduce_paper(options, judged);

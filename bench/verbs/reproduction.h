@@ -37,7 +37,8 @@ void make_tables(Reproduction& all, const Options& options);
 
 [[nodiscard]] Report reproduction_report(const Reproduction& all, const Options& options);
 
-/// The page of `reproduce rivals` or `ladder`: these tables and figures, and in JSON all that `bench` records too.
+/// The page of `reproduce rivals`, `ladder` or `volume`: these tables and figures, and in JSON all that `bench` records
+/// too.
 [[nodiscard]] Report bench_run_report(const BenchResult& result, const std::vector<PaperTable>& tables,
                                       const std::vector<PaperFigure>& figures, const Options& options);
 

@@ -1,5 +1,5 @@
 // The verbs `rays` and `judge` as programs meet them.
-#include "bench/judging/npy.h"
+#include "bench/results/npy.h"
 #include "core/base/files.h"
 #include "tests/support/program_fixture.h"
 

@@ -357,7 +357,7 @@ TEST(Options, each_name_has_one_meaning_and_a_former_name_is_answered_with_the_n
 {
     EXPECT_EQ(parse_options({"check", "--differences", "folder"}).picture_folder, "folder");
     EXPECT_EQ(parse_options({"check", "--junit", "check.xml"}).junit, "check.xml");
-    EXPECT_TRUE(contains(rejection({"render", "--picture", "folder"}), "normals or steps"));
+    EXPECT_TRUE(contains(rejection({"render", "--picture", "folder"}), "normals, steps, crossings, depth or light"));
     EXPECT_TRUE(contains(rejection({"check", "--picture", "folder"}), "--picture of check is now --differences"));
     EXPECT_TRUE(contains(rejection({"report", "--picture=a.png", "a.json"}), "--picture of report is now --image"));
     EXPECT_TRUE(contains(rejection({"inspect", "--require", "sm_90"}), "--require of inspect is now --require-target"));
@@ -371,8 +371,8 @@ TEST(Options, reproduce_takes_tables_wherever_they_stand_and_the_papers_views)
     EXPECT_EQ(options.scenes, std::vector<std::string>{"cubes"});
     EXPECT_EQ(options.camera_set, CameraSet::flight);
     EXPECT_TRUE(options.resume);
-    EXPECT_TRUE(
-        contains(rejection({"reproduce", "table1"}), "table3, table4, table5, table6, figure6, rivals or ladder"));
+    EXPECT_TRUE(contains(rejection({"reproduce", "table1"}),
+                         "table3, table4, table5, table6, figure6, rivals, ladder or volume"));
 }
 
 TEST(Options, rivals_are_measured_as_bench_measures)

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace tetrace {
@@ -28,5 +30,17 @@ struct NpyArray {
 
 /// Writes rows of float32. Throws as write_whole() does.
 void write_npy(const std::filesystem::path& path, std::size_t columns, std::span<const float> values);
+
+/// A column of a .npy file of records, by whose name NumPy finds it: a word of ASCII letters.
+struct NpyColumn {
+    std::string name;
+    std::variant<std::vector<std::int32_t>, std::vector<std::int64_t>, std::vector<std::uint32_t>,
+                 std::vector<std::uint64_t>, std::vector<float>, std::vector<double>>
+        values;
+};
+
+/// Writes a one-dimensional array of records: numpy.load(path)["name"] is a column. All columns are equally long.
+/// Throws as write_whole() does.
+void write_npy(const std::filesystem::path& path, std::span<const NpyColumn> columns);
 
 } // namespace tetrace

@@ -1,4 +1,4 @@
-#include "bench/judging/npy.h"
+#include "bench/results/npy.h"
 
 #include "core/base/error.h"
 #include "core/base/files.h"
@@ -12,6 +12,7 @@
 #include <fmt/ranges.h>
 #include <optional>
 #include <string_view>
+#include <type_traits>
 
 namespace tetrace {
 
@@ -147,17 +148,70 @@ NpyArray read_npy(const std::filesystem::path& path, std::size_t columns, const 
     return array;
 }
 
-void write_npy(const std::filesystem::path& path, std::size_t columns, std::span<const float> values)
+namespace {
+
+template <class Number>
+constexpr std::string_view npy_type()
 {
-    std::string header = fmt::format("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}, {}), }}",
-                                     values.size() / columns, columns);
+    if constexpr (std::is_same_v<Number, std::int32_t>) return "<i4";
+    if constexpr (std::is_same_v<Number, std::int64_t>) return "<i8";
+    if constexpr (std::is_same_v<Number, std::uint32_t>) return "<u4";
+    if constexpr (std::is_same_v<Number, std::uint64_t>) return "<u8";
+    if constexpr (std::is_same_v<Number, float>) return "<f4";
+    if constexpr (std::is_same_v<Number, double>) return "<f8";
+}
+
+/// type, shape: as Python literals.
+std::string npy_head(const std::string& type, const std::string& shape)
+{
+    std::string header = fmt::format("{{'descr': {}, 'fortran_order': False, 'shape': {}, }}", type, shape);
     const std::size_t before = npy_magic.size() + 4; // version and length
     header.append(npy_alignment - (before + header.size() + 1) % npy_alignment, ' ');
     header += '\n';
     std::string bytes(npy_magic);
     bytes += {'\1', '\0', static_cast<char>(header.size() & 255), static_cast<char>(header.size() >> 8)};
-    bytes += header;
+    return bytes + header;
+}
+
+/// Where a column's numbers are, and how they are called.
+struct NpyField {
+    const char* bytes;
+    std::size_t size;
+    std::string_view type;
+};
+
+NpyField field_of(const NpyColumn& column)
+{
+    return std::visit(
+        [](const auto& values) {
+            using Number = typename std::remove_cvref_t<decltype(values)>::value_type;
+            return NpyField{reinterpret_cast<const char*>(values.data()), sizeof(Number), npy_type<Number>()};
+        },
+        column.values);
+}
+
+} // namespace
+
+void write_npy(const std::filesystem::path& path, std::size_t columns, std::span<const float> values)
+{
+    std::string bytes = npy_head("'<f4'", fmt::format("({}, {})", values.size() / columns, columns));
     bytes.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+    write_whole(path, bytes);
+}
+
+void write_npy(const std::filesystem::path& path, std::span<const NpyColumn> columns)
+{
+    const std::size_t rows = std::visit([](const auto& values) { return values.size(); }, columns.front().values);
+    std::string type;
+    std::vector<NpyField> fields;
+    for (const NpyColumn& column : columns) {
+        fields.push_back(field_of(column));
+        type += fmt::format("('{}', '{}'), ", column.name, fields.back().type);
+    }
+    std::string bytes = npy_head(fmt::format("[{}]", type), fmt::format("({},)", rows));
+    for (std::size_t row = 0; row < rows; ++row)
+        for (const NpyField& field : fields)
+            bytes.append(field.bytes + row * field.size, field.size);
     write_whole(path, bytes);
 }
 

@@ -1,4 +1,4 @@
-#include "bench/judging/npy.h"
+#include "bench/results/npy.h"
 #include "core/base/error.h"
 #include "tests/support/temporary_folder.h"
 
@@ -45,6 +45,28 @@ TEST(Npy, returns_what_was_written)
     EXPECT_EQ(array.row(1)[1], 7);
     const std::string bytes = read_text(folder / "a.npy");
     EXPECT_EQ((bytes.size() - sizeof(float) * numbers.size()) % 64, 0u) << "NumPy aligns the data";
+}
+
+TEST(Npy, writes_records_of_every_type_as_numpy_has_them)
+{
+    const TemporaryFolder folder;
+    const std::vector<NpyColumn> columns = {
+        {"a", std::vector<std::uint32_t>{1, 0xFFFFFFFFu}}, {"b", std::vector<std::int64_t>{-2, 3}},
+        {"c", std::vector<double>{0.5, -1e300}},           {"d", std::vector<float>{4, 5}},
+        {"e", std::vector<std::uint64_t>{6, ~0ull}},       {"f", std::vector<std::int32_t>{-7, 8}}};
+    write_npy(folder / "a.npy", columns);
+    const std::string bytes = read_text(folder / "a.npy");
+    EXPECT_NE(bytes.find("'descr': [('a', '<u4'), ('b', '<i8'), ('c', '<f8'), ('d', '<f4'), ('e', '<u8'), ('f', "
+                         "'<i4'), ], 'fortran_order': False, 'shape': (2,), }"),
+              std::string::npos)
+        << bytes;
+    const std::string records = data_of<std::uint32_t>({1}) + data_of<std::int64_t>({-2}) + data_of<double>({0.5}) +
+                                data_of<float>({4}) + data_of<std::uint64_t>({6}) + data_of<std::int32_t>({-7}) +
+                                data_of<std::uint32_t>({0xFFFFFFFFu}) + data_of<std::int64_t>({3}) +
+                                data_of<double>({-1e300}) + data_of<float>({5}) + data_of<std::uint64_t>({~0ull}) +
+                                data_of<std::int32_t>({8});
+    EXPECT_TRUE(bytes.ends_with(records));
+    EXPECT_EQ((bytes.size() - records.size()) % 64, 0u);
 }
 
 TEST(Npy, reads_float64_and_version_2)
