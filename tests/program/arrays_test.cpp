@@ -110,7 +110,7 @@ TEST_F(Arrays, are_refused_before_the_run_if_they_cannot_be_written_or_would_not
     const Ended taken = run(check + "taken");
     EXPECT_EQ(taken.code, 2);
     EXPECT_TRUE(contains(taken.errors, "--out-arrays: the folder 'taken' cannot be made")) << taken.errors;
-    for (const std::string other : {"--resume --out a.json", "--repeat 2", "--shard 1/2 --views 0,1"}) {
+    for (const std::string other : {"--resume --out a.json", "--repeat 2", "--shard 1/2 --views 1 --out a.json"}) {
         const Ended ended = run(check + "arrays " + other);
         EXPECT_EQ(ended.code, 2) << other;
         EXPECT_TRUE(contains(ended.errors, "--out-arrays")) << ended.errors;
