@@ -37,8 +37,13 @@ bool consists_of(const std::string& text, const char* accepted)
 Target parse_target(const std::string& option, const std::string& text)
 {
     if (text.starts_with("sm_") && consists_of(text.substr(3), "0123456789")) return {text, Maker::nvidia};
-    if (consists_of(text, "abcdefghijklmnopqrstuvwxyz0123456789")) return {text, Maker::amd};
-    reject_value(option, text, "an AMD family as RADV names it (gfx1100, navi21, ...), or sm_ and a number");
+    constexpr const char* letters = "abcdefghijklmnopqrstuvwxyz0123456789";
+    if (text.starts_with(hip_prefix) && consists_of(text.substr(std::string(hip_prefix).size()), letters))
+        return {text, Maker::hip};
+    if (consists_of(text, letters)) return {text, Maker::amd};
+    reject_value(
+        option, text,
+        "an AMD family as RADV names it (gfx1100, navi21, ...), hip: and a chip (hip:gfx90a), or sm_ and a number");
 }
 
 std::vector<Target> targets_of(const std::vector<std::string>& names)
@@ -88,8 +93,9 @@ std::vector<EntryPoint> all_entry_points(Maker maker)
 {
     std::vector<EntryPoint> points;
     for (const KernelId& kernel : all_kernels()) {
+        const bool has_persistent = maker == Maker::nvidia || maker == Maker::driver;
         const bool is_there =
-            kernel.schedule == Schedule::tiles || (maker != Maker::amd && kernel.schedule == Schedule::persistent);
+            kernel.schedule == Schedule::tiles || (has_persistent && kernel.schedule == Schedule::persistent);
         if (is_portable(kernel) && is_there) add_entries(points, kernel);
     }
     return points;

@@ -14,18 +14,23 @@
 
 namespace tetrace {
 
-/// Whose compiler is asked: Mesa's RADV on null hardware; nvcc with ptxas; or the driver of a device that is here.
-enum class Maker { amd, nvidia, driver };
+/// Whose compiler is asked: Mesa's RADV on null hardware; nvcc with ptxas; hipcc; or the driver of a device that is
+/// here.
+enum class Maker { amd, nvidia, hip, driver };
+
+/// A target of hipcc is this and AMD's name of the chip.
+inline constexpr const char* hip_prefix = "hip:";
 
 /// A GPU that kernels are compiled for. It need not be here, unless its driver is asked.
 struct Target {
-    std::string name; ///< "gfx1100", "navi21", "sm_90"; of a driver's device as in rows: "cuda", "vulkan:1"
+    std::string
+        name; ///< "gfx1100", "navi21", "sm_90", "hip:gfx90a"; of a driver's device as in rows: "cuda", "vulkan:1"
     Maker maker = Maker::amd;
     Backend* backend = nullptr; ///< of the driver's device
     std::size_t device = 0;     ///< its index
 };
 
-/// "sm_" and a number is NVIDIA's; other lower-case letters and digits are AMD's.
+/// "sm_" and a number is NVIDIA's; "hip:" and a chip hipcc's; other lower-case letters and digits are AMD's.
 /// Throws Error{usage} naming the option for anything else.
 [[nodiscard]] Target parse_target(const std::string& option, const std::string& text);
 
@@ -42,7 +47,7 @@ struct EntryPoint {
 };
 
 /// Every entry point of our kernels that the maker's GPUs may get, in the kernels' order. AMD's have no schedule
-/// persistent: Vulkan lacks such kernels. Not every driver's backend has all.
+/// persistent: Vulkan lacks such kernels, and HIP's subgroups have another size. Not every driver's backend has all.
 [[nodiscard]] std::vector<EntryPoint> all_entry_points(Maker maker);
 
 /// Whether --structure, --method, --layout, --schedule, --math and --entry keep it. Defaults: as for rows, and math

@@ -1,6 +1,7 @@
 #include "bench/inspection/inspection.h"
 
 #include "bench/inspection/drivers.h"
+#include "bench/inspection/hipcc.h"
 #include "bench/inspection/null_hardware.h"
 #include "bench/inspection/nvcc.h"
 #include "core/base/error.h"
@@ -50,6 +51,7 @@ Inspection inspect(const Options& options, const Progress& tell)
                                       "--schedule, --math, --entry, --backend and --target");
     Inspection inspection;
     std::optional<Nvcc> nvcc; // looked for once, and only if it is needed
+    std::optional<Hipcc> hipcc;
     for (const Target& target : targets) {
         const auto points = points_of(options, target);
         if (points.empty()) {
@@ -61,9 +63,11 @@ Inspection inspect(const Options& options, const Progress& tell)
         const PartDone tell_part = [&](double part) { tell("compiling", (first + part) / all, "for " + target.name); };
         tell_part(0);
         if (target.maker == Maker::nvidia && !nvcc) nvcc = find_nvcc();
+        if (target.maker == Maker::hip && !hipcc) hipcc = find_hipcc();
         const std::filesystem::path code = options.code_folder.value_or("");
         auto rows = target.maker == Maker::amd      ? ask_null_hardware(target, points, code, tell_part)
                     : target.maker == Maker::nvidia ? ask_nvcc(*nvcc, target, points, code, tell_part)
+                    : target.maker == Maker::hip    ? ask_hipcc(*hipcc, target, points, code, tell_part)
                                                     : ask_driver(target, points, code, tell_part);
         if (std::ranges::all_of(rows, is_skipped))
             inspection.skipped.push_back(fmt::format("{}: {}", target.name, rows.front().reason));

@@ -203,7 +203,8 @@ CodeFigures read_amd(std::string_view text)
     for (std::string raw; std::getline(stream, raw);) {
         const std::string line = trimmed(std::string_view(raw).substr(0, raw.find(';')));
         if (line.empty()) continue;
-        if (line.starts_with("BB") && line.ends_with(":")) {
+        const bool is_label = line.starts_with("BB") || line.starts_with(".LBB");
+        if (is_label && line.ends_with(":")) {
             lines.push_back({line.substr(0, line.size() - 1), {}, {}});
             continue;
         }
@@ -212,6 +213,32 @@ CodeFigures read_amd(std::string_view text)
         lines.push_back({{}, line, branches ? words.back() : std::string()});
     }
     return figures_of(lines, {is_amd_load, is_amd_fused});
+}
+
+CodeFigures read_hip(std::string_view text, const std::string& entry)
+{
+    std::istringstream stream{std::string(text)};
+    std::string code, halves; // of instructions that do two things
+    std::uint64_t divisions = 0;
+    bool inside = false;
+    for (std::string line; std::getline(stream, line);) {
+        if (line.starts_with(entry + ":")) inside = true;
+        if (line.starts_with(".Lfunc_end")) inside = false;
+        const std::string instruction = trimmed(line);
+        if (!inside || (instruction.starts_with(".") && !instruction.starts_with(".LBB"))) continue;
+        if (line.starts_with(entry)) continue;
+        code += line + "\n";
+        halves += line.substr(0, line.find("::")) + "\n";
+        if (has(line, "::")) halves += line.substr(line.find("::") + 2) + "\n";
+        if (instruction.starts_with("v_div_fmas_f32")) ++divisions;
+    }
+    CodeFigures figures = read_amd(code);
+    figures.fused = read_amd(halves).fused;
+    figures.divisions = divisions;
+    constexpr std::uint64_t fused_of_division = 5;
+    if (figures.fused >= fused_of_division * divisions) figures.fused -= fused_of_division * divisions;
+    if (figures.fused == 0) figures.first_fused.clear();
+    return figures;
 }
 
 CodeFigures read_ptx(std::string_view text, const std::string& entry)

@@ -23,6 +23,11 @@ struct CodeFigures {
 /// (docs/spec/numbers.md, N1: there are none). v_div_fmas belongs to a division, whose result decides nothing.
 [[nodiscard]] CodeFigures read_amd(std::string_view text);
 
+/// One entry of the assembly that clang writes for AMD's GPUs, as read_amd() reads RADV's. Each division is a sequence
+/// that ends with v_div_fmas and has 5 fused operations (LLVM's lowering of fdiv to f32, correctly rounded): they
+/// decide nothing and are not counted, unless the entry has fewer.
+[[nodiscard]] CodeFigures read_hip(std::string_view text, const std::string& entry);
+
 /// One entry of a PTX text. fused: fma and mad, and every sum, difference and product that states no rounding, since
 /// ptxas may fuse only those (PTX ISA, add.f32). No instruction of PTX is one of the machine's: `instructions` is 0.
 [[nodiscard]] CodeFigures read_ptx(std::string_view text, const std::string& entry);

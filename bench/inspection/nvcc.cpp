@@ -1,17 +1,16 @@
 #include "bench/inspection/nvcc.h"
 
 #include "backends/cuda/driver_backend.h"
+#include "bench/inspection/compiler.h"
 #include "bench/inspection/work_folder.h"
 #include "core/base/error.h"
 #include "core/base/files.h"
 #include "core/base/printable.h"
 #include "core/device/launch.h"
 #include "core/device/session.h"
-#include "scenes/child_process.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -62,41 +61,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double max_kernel_s = 300; // of one kernel; the slowest take 10
-
-fs::path find_program(const char* name)
+/// The folders of the toolkits' programs, after those of PATH.
+std::vector<fs::path> toolkit_folders()
 {
     std::vector<fs::path> folders;
-    const auto add = [&](const char* variable, const char* below) {
-        const char* const value = std::getenv(variable);
-        std::istringstream list(value != nullptr ? value : "");
-        for (std::string folder; std::getline(list, folder, ':');)
-            if (!folder.empty()) folders.push_back(fs::path(folder) / below);
-    };
-    add("PATH", "");
-    add("CUDA_PATH", "bin");
-    add("CUDA_HOME", "bin");
+    for (const char* const variable : {"CUDA_PATH", "CUDA_HOME"})
+        if (const char* const value = std::getenv(variable); value != nullptr && *value != 0)
+            folders.push_back(fs::path(value) / "bin");
     folders.insert(folders.end(), {"/usr/local/cuda/bin", "/opt/cuda/bin"});
-    for (const fs::path& folder : folders)
-        if (::access((folder / name).c_str(), X_OK) == 0) return folder / name;
-    return {};
-}
-
-ChildOutcome run(const fs::path& program, const std::vector<std::string>& arguments)
-{
-    ChildOutcome outcome = run_child(program, arguments, {.time_s = max_kernel_s});
-    if (outcome.end == ChildOutcome::End::interrupted) throw Error(ErrorKind::interrupted, "inspect: interrupted");
-    return outcome;
-}
-
-bool succeeded(const ChildOutcome& outcome)
-{
-    return outcome.end == ChildOutcome::End::exited && outcome.code == 0;
-}
-
-std::string first_line(const std::string& text)
-{
-    return printable_line(text.substr(0, std::min<std::size_t>(text.find('\n'), 300)));
+    return folders;
 }
 
 std::string text_of(const fs::path& file)
@@ -125,14 +98,15 @@ Compiled compile(const Nvcc& nvcc, const Target& target, const cuda::ProgramId& 
     for (const std::string& option : cuda::compiler_options(program))
         arguments.push_back(option);
     arguments.insert(arguments.end(), {"-o", binary.string(), source.string()});
-    const ChildOutcome outcome = run(nvcc.program, arguments);
+    const ChildOutcome outcome = run_compiler(nvcc.program, arguments);
     if (!succeeded(outcome)) return {{}, {}, {}, first_line(outcome.errors)};
     Compiled compiled{text_of(folder.path() / (program.name() + ".ptx")), {}, read_ptxas(outcome.errors), {}};
     const std::string name = target.name + "-" + program.name();
     if (!code.empty()) write_whole(code / (name + ".ptx"), compiled.ptx);
     if (nvcc.disassembler.empty()) return compiled;
     const fs::path listing = folder.path() / "listing"; // longer than what run_child() keeps
-    if (succeeded(run("/bin/sh", {"-c", "exec \"$0\" -c \"$1\" > \"$2\"", nvcc.disassembler, binary, listing})))
+    if (succeeded(
+            run_compiler("/bin/sh", {"-c", "exec \"$0\" -c \"$1\" > \"$2\"", nvcc.disassembler, binary, listing})))
         compiled.sass = text_of(listing);
     if (!code.empty()) write_whole(code / (name + ".sass"), compiled.sass);
     return compiled;
@@ -187,12 +161,13 @@ void take(Inspected& row, const Compiled& compiled, const std::string& entry)
 Nvcc find_nvcc()
 {
     Nvcc nvcc;
-    nvcc.program = find_program("nvcc");
+    nvcc.program = find_compiler("nvcc", toolkit_folders());
     if (nvcc.program.empty()) {
         nvcc.reason = "NVIDIA's compiler, nvcc, is missing; install the CUDA toolkit (Debian: nvidia-cuda-toolkit)";
         return nvcc;
     }
-    const ChildOutcome version = run(nvcc.program, {"--version"}), known = run(nvcc.program, {"--list-gpu-code"});
+    const ChildOutcome version = run_compiler(nvcc.program, {"--version"}),
+                       known = run_compiler(nvcc.program, {"--list-gpu-code"});
     std::smatch found;
     if (!succeeded(version) || !succeeded(known) ||
         !std::regex_search(version.out, found, std::regex("release ([0-9.]+)"))) {
@@ -203,7 +178,7 @@ Nvcc find_nvcc()
     std::istringstream lines(known.out);
     for (std::string line; std::getline(lines, line);)
         if (line.starts_with("sm_")) nvcc.targets.push_back(printable_line(line));
-    nvcc.disassembler = find_program("nvdisasm");
+    nvcc.disassembler = find_compiler("nvdisasm", toolkit_folders());
     return nvcc;
 }
 

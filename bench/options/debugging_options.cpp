@@ -51,7 +51,8 @@ std::vector<OptionRow> inspect_options()
     return {
         {"Compilers", "--target", "GPU",
          "Compile for this GPU, which need not be here: AMD's as RADV names them (gfx1100, navi21, gfx906, ...), "
-         "NVIDIA's as nvcc does (sm_75, sm_90, ...). Default: gfx1100, navi21, gfx906, sm_75, sm_90; none with "
+         "by hipcc (hip:gfx90a, ...), NVIDIA's as nvcc does (sm_75, sm_90, ...). Default: gfx1100, navi21, gfx906, "
+         "sm_75, sm_90; none with "
          "--backend or --device.",
          bit(Verb::inspect), true, append_text(&Options::gpus),
          usual_for(every_verb, "compile for this GPU: gfx1100, sm_90, ...")},

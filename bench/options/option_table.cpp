@@ -320,7 +320,7 @@ std::vector<OptionRow> driver_options()
         {"Drivers", "--driver-limit", "TIME",
          "End a driver's process if it does not answer a call within this time: seconds, or a number followed by s, "
          "m or h. Needs --isolate device. Default: 5 minutes, plus a millisecond per ray or a second per megabyte "
-         "of data.",
+         "of data. A call that compiles ends after 3 times as much of processor time.",
          with_drivers, false, set_seconds("--driver-limit", &Options::driver_limit_s),
          usual_for(bit(Verb::devices), "time that a driver has for a call: 30s, 5m")},
     };

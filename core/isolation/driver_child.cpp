@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <ctime>
 #include <fcntl.h>
 #include <spawn.h>
 #include <sstream>
@@ -19,8 +20,10 @@ namespace tetrace {
 namespace {
 
 constexpr int tick_ms = 100;
-constexpr double max_tick_s = 1; ///< we were stopped too, if it took longer
-constexpr double farewell_s = 5; ///< for a process to end after its socket is closed
+constexpr double max_tick_s = 1;        ///< we were stopped too, if it took longer
+constexpr double farewell_s = 5;        ///< for a process to end after its socket is closed
+constexpr double compiler_patience = 3; ///< processor time of a call that compiles, in limits; rusticl needs 8 minutes
+constexpr double busy_share = 0.01;     ///< of a processor: less than that is waiting
 
 /// The instructions for posix_spawn(). Only its own calls may run before the program is replaced: other threads hold
 /// locks.
@@ -90,6 +93,23 @@ int reap(pid_t pid, double patience_s)
     return status;
 }
 
+/// That a process has used, all its threads together; 0 if it has ended.
+double processor_s(pid_t pid)
+{
+    clockid_t clock{};
+    timespec time{};
+    if (::clock_getcpuclockid(pid, &clock) != 0 || ::clock_gettime(clock, &time) != 0) return 0;
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/// "0.5", "300".
+std::string number_text(double number)
+{
+    std::ostringstream text;
+    text << number;
+    return text.str();
+}
+
 std::string signal_text(int signal)
 {
     const char* const name = ::sigabbrev_np(signal);
@@ -134,11 +154,9 @@ ByteReader DriverChild::call(const DriverCall& call)
     if (is_lost()) throw Error(ErrorKind::internal, "a call for a driver's process that is gone: " + call.doing);
     const double limit_s = call_limit_s_ > 0 ? call_limit_s_ : call.limit_s;
     if (!channel_.send(call.request.bytes(), call.file)) lose(end(farewell_s), call.doing);
-    if (!await_answer(limit_s)) {
+    if (const std::string why = await_answer(limit_s, call.compiles); !why.empty()) {
         static_cast<void>(end(0));
-        std::ostringstream text; // "0.5", "300"
-        text << "gave no answer for " << limit_s << " s, and was ended,";
-        lose(text.str(), call.doing);
+        lose(why + ", and was ended,", call.doing);
     }
     auto answer = channel_.receive();
     if (!answer) lose(end(farewell_s), call.doing);
@@ -148,14 +166,23 @@ ByteReader DriverChild::call(const DriverCall& call)
 }
 
 /// Counts only the time in which we ran ourselves: Ctrl-Z, a debugger and a machine that sleeps stop the driver too.
-bool DriverChild::await_answer(double limit_s) const
+/// A compiler at work is charged its processor time, and at least a quarter of the clock's: one that polls is hung too.
+std::string DriverChild::await_answer(double limit_s, bool compiles) const
 {
-    double waited_s = 0;
-    for (Stopwatch tick; waited_s < limit_s; tick = Stopwatch()) {
-        if (channel_.wait(static_cast<int>(std::clamp(1e3 * (limit_s - waited_s), 1.0, double{tick_ms})))) return true;
-        waited_s += std::min(tick.seconds(), max_tick_s);
+    double idle_s = 0, busy_s = 0, used_s = processor_s(pid_);
+    for (Stopwatch tick; idle_s < limit_s; tick = Stopwatch()) {
+        if (channel_.wait(static_cast<int>(std::clamp(1e3 * (limit_s - idle_s), 1.0, double{tick_ms})))) return {};
+        const double waited_s = std::min(tick.seconds(), max_tick_s);
+        const double now_s = compiles ? processor_s(pid_) : used_s;
+        const double worked_s = now_s - std::exchange(used_s, now_s);
+        if (worked_s < busy_share * waited_s)
+            idle_s += waited_s;
+        else
+            busy_s += std::max(worked_s, waited_s / 4);
+        if (busy_s >= compiler_patience * limit_s)
+            return "gave no answer for " + number_text(compiler_patience * limit_s) + " s of processor time";
     }
-    return false;
+    return "gave no answer for " + number_text(limit_s) + " s";
 }
 
 std::string DriverChild::end(double patience_s)

@@ -28,6 +28,7 @@ struct DriverCall {
     ByteWriter request;
     int file = -1; ///< goes with the request
     double limit_s = 0;
+    bool compiles = false; ///< may take 3 times its limit in processor time, of whatever length on a busy machine
 };
 
 /// A scene that a driver's process has, for as long as a session holds this.
@@ -60,8 +61,8 @@ public:
     [[nodiscard]] std::shared_ptr<const RemoteScene> add_scene(const void* here);
 
 private:
-    /// False if the process has not answered in time.
-    [[nodiscard]] bool await_answer(double limit_s) const;
+    /// Empty when the process has answered. Else why it is given up: "gave no answer for 300 s".
+    [[nodiscard]] std::string await_answer(double limit_s, bool compiles) const;
     /// Gives the process that long to end by itself, ends it, and says how: "was ended by signal 11 (...)".
     [[nodiscard]] std::string end(double patience_s);
     [[noreturn]] void lose(const std::string& how, const std::string& doing) const;

@@ -54,8 +54,8 @@ void IsolatedSession::open()
     request.put(remote == nullptr ? std::uint64_t{0} : remote->number);
     request.put(is_new);
     const SharedMemory memory = is_new ? put_scene(request, kernel_, scene_) : SharedMemory();
-    ByteReader answer =
-        child_->call({"opening " + name_of(kernel_), request, memory.file(), call_limit_s(0, memory.bytes().size())});
+    ByteReader answer = child_->call(
+        {"opening " + name_of(kernel_), request, memory.file(), call_limit_s(0, memory.bytes().size()), true});
     number_ = answer.get<std::uint64_t>();
     remote_scene_ = std::move(remote);
     facts_ = answer.get<SessionFacts>();
@@ -286,7 +286,7 @@ CompiledCode IsolatedBackend::compiled(std::size_t device, const std::optional<K
     request.put(starts_outside);
     const std::string what = kernel ? name_of(*kernel) : "an empty kernel";
     const SharedMemory text(max_code_bytes);
-    ByteReader answer = child_of(device)->call({"compiling " + what, request, text.file(), call_limit_s(0)});
+    ByteReader answer = child_of(device)->call({"compiling " + what, request, text.file(), call_limit_s(0), true});
     return get_code(answer, text);
 }
 

@@ -64,6 +64,13 @@ echo "Used 32 registers" >&2
     const std::string path_ = std::getenv("PATH");
 };
 
+/// A target's name as the name of a test may have it.
+std::string test_name_of(std::string target)
+{
+    std::ranges::replace(target, ':', '_');
+    return target;
+}
+
 /// A target, and the programs of which its compiler is asked here.
 struct Asked {
     std::string target;
@@ -96,7 +103,7 @@ std::string compiler_of(const json& program)
 {
     std::smatch found;
     const auto text = program["compiler"].get<std::string>();
-    if (std::regex_search(text, found, std::regex("^(radv|nvcc)[^0-9]* ([0-9]+\\.[0-9]+)")))
+    if (std::regex_search(text, found, std::regex("^(radv|nvcc|hipcc)[^0-9]* ([0-9]+\\.[0-9]+)")))
         return found[1].str() + "-" + found[2].str();
     return text;
 }
@@ -219,8 +226,11 @@ INSTANTIATE_TEST_SUITE_P(each, InspectedTarget,
                                          Asked{"sm_75", {"--method all --entry outside,inside,rays"}},
                                          Asked{"sm_90",
                                                {"--method project,single --layout half32,tet64,bvh2,bvh4,cwbvh --entry "
-                                                "outside,inside,rays"}}),
-                         [](const auto& instance) { return instance.param.target; });
+                                                "outside,inside,rays"}},
+                                         Asked{"hip:gfx90a",
+                                               {"--method project,single --layout half32,tet64,bvh2,bvh4,cwbvh"}},
+                                         Asked{"hip:gfx1100", {"--layout half32 --entry outside,rays"}}),
+                         [](const auto& instance) { return test_name_of(instance.param.target); });
 
 // What a change of a kernel most often costs, in seconds: `each` is run by `make test-all`.
 INSTANTIATE_TEST_SUITE_P(of_default_rows, InspectedTarget,
@@ -297,6 +307,20 @@ TEST_F(Inspect, targets_that_cannot_be_asked_are_skipped_with_the_reason_and_fai
     EXPECT_NE(required.errors.find("--require-target gfx9999"), std::string::npos) << required.errors;
     EXPECT_EQ(run("inspect --target SM_90").code, 2);
     EXPECT_EQ(run("inspect --target gfx9999 --require-target sm_90 --method maria --layout tet80").code, 2);
+}
+
+TEST_F(Inspect, a_missing_hipcc_is_named_with_its_package)
+{
+    const std::string path = std::getenv("PATH");
+    ::setenv("ROCM_PATH", "/nonexistent", 1);
+    ::setenv("PATH", "/nonexistent", 1);
+    const Ended ended = run("inspect --target hip:gfx90a --method maria --layout tet80");
+    ::setenv("PATH", path.c_str(), 1);
+    ::unsetenv("ROCM_PATH");
+    EXPECT_EQ(ended.code, 3);
+    EXPECT_NE(ended.out.find("hip:gfx90a: AMD's compiler of HIP, hipcc, is missing; install ROCm's (Debian: hipcc)"),
+              std::string::npos)
+        << ended.out << ended.errors;
 }
 
 TEST_F(Inspect, the_code_is_kept_where_it_is_asked_for)

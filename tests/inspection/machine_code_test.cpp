@@ -63,6 +63,31 @@ TEST(MachineCode, amds_loads_are_in_loops_between_a_label_and_a_branch_back)
     EXPECT_EQ(figures.first_fused, "v_fmac_f32_e32 v1, v2, v3");
 }
 
+TEST(MachineCode, of_an_entry_of_hips_code_what_divides_is_not_fused)
+{
+    const auto text_of = [](const std::string& fused) {
+        return "other:\n\tv_fma_f32 v1, v2, v3, v4\n.Lfunc_end0:\none:                  ; @one\n; %bb.0:\n"
+               "\ts_load_dwordx2 s[0:1], s[4:5], 0x0\n.LBB1_1:      ; =>This Inner Loop Header\n"
+               "\tglobal_load_dword v0, v1, s[0:1]\n\tv_div_scale_f32 v2, s[6:7], v0, v0, 1.0\n" +
+               fused +
+               "\tv_div_fmas_f32 v3, v3, v4, v5\n\ts_cbranch_scc1 .LBB1_1\n\ts_endpgm\n"
+               "\t.section .rodata\n.Lfunc_end1:\n\tv_fma_f32 v1, v2, v3, v4\n";
+    };
+    const std::string division = "\tv_fma_f32 v3, -v2, v4, 1.0\n\tv_fmac_f32_e32 v4, v3, v4\n"
+                                 "\tv_fma_f32 v3, -v2, v5, v6\n\tv_fmac_f32_e32 v5, v3, v4\n"
+                                 "\tv_fma_f32 v2, -v2, v5, v6\n";
+    const CodeFigures one = read_hip(text_of(division), "one");
+    EXPECT_EQ(one.fused, 0u);
+    EXPECT_EQ(one.first_fused, "");
+    EXPECT_EQ(one.divisions, 1u);
+    EXPECT_EQ(one.instructions, 11u);
+    EXPECT_EQ(one.branches, 1u);
+    EXPECT_EQ(one.loads_in_loops, 1u);
+    EXPECT_EQ(read_hip(text_of(division + "\tv_pk_fma_f32 v[0:1], v[2:3], v[4:5], v[6:7]\n"), "one").fused, 1u);
+    EXPECT_EQ(read_hip(text_of("\tv_dual_fmac_f32 v0, v1, v2 :: v_dual_fmac_f32 v3, v4, v5\n"), "one").fused, 2u);
+    EXPECT_EQ(read_hip(text_of("\tv_fma_f32 v3, -v2, v4, 1.0\n"), "one").fused, 1u) << "no such division is known";
+}
+
 TEST(MachineCode, ptx_that_is_fused_or_may_be_is_found)
 {
     for (const char* const fused :
@@ -155,7 +180,9 @@ TEST(MachineCode, targets_are_amds_or_nvidias_by_their_names)
 {
     EXPECT_EQ(parse_target("--target", "sm_90").maker, Maker::nvidia);
     EXPECT_EQ(parse_target("--target", "gfx1100").maker, Maker::amd);
-    for (const char* const bad : {"", "sm_", "sm_90;", "GFX1100", "../x", "a b", "abcdefghijklmnopqrstu"})
+    EXPECT_EQ(parse_target("--target", "hip:gfx90a").maker, Maker::hip);
+    for (const char* const bad : {"", "sm_", "hip:", "hip:GFX90A", "hip:gfx90a:xnack+", "sm_90;", "GFX1100", "../x",
+                                  "a b", "abcdefghijklmnopqrstu"})
         EXPECT_THROW(static_cast<void>(parse_target("--target", bad)), Error) << bad;
     EXPECT_EQ(family_names("gfx906"), (std::vector<std::string>{"gfx906", "vega20"}));
     EXPECT_EQ(family_names("navi21"), (std::vector<std::string>{"navi21", "gfx1030"}));

@@ -320,6 +320,16 @@ TEST_F(Hung, driver_is_ended_at_its_limit_and_other_sessions_go_on)
     EXPECT_GT(call_limit_s(1'000'000), 2 * call_limit_s(0));
 }
 
+TEST_F(Hung, driver_that_compiles_is_charged_its_processor_time)
+{
+    EXPECT_EQ(use(*open("open work"), 1).size(), use(*open(""), 1).size()) << "0.8 s of work is no hang";
+    EXPECT_TRUE(contains(error_of([&] { use(*open("open spin"), 1); }),
+                         "gave no answer for 1.2 s of processor time, and was ended, while opening"));
+    EXPECT_TRUE(contains(error_of([&] { use(*open("launch spin"), 1); }),
+                         "gave no answer for 0.4 s, and was ended, while launching"))
+        << "a launch does not compile";
+}
+
 TEST(Bytes, of_a_damaged_message_are_refused)
 {
     ByteWriter writer;
