@@ -99,7 +99,6 @@ RowDevice page_device()
     device.backend = browser_api;
     device.device.name = "not known";
     device.device.kind = DeviceKind::gpu;
-    device.device.threads = 0;
     device.self_tests[MathMode::exact] = {};
     return device;
 }
