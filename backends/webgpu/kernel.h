@@ -1,10 +1,19 @@
 // A kernel as WGSL: the entry around the shared text. main.wgsl calls run_item() for each item of each work group.
-// RAYS, SEGMENTS and ABSORB: for those tasks, whose rays are given.
+// RAYS, SEGMENTS, TALLY and ABSORB: for those tasks, whose rays are given.
 #include "kernels/language/dialect_wgsl.h"
 
 #include "kernels/language/vector.h"
 
 #include "kernels/language/scene_view_wgsl.h"
+
+#ifdef TALLY
+// One array of sums (sums.wgsl), which functions reach by its name.
+#define LENGTH_SUMS uint
+#define NO_SUMS 0u
+#define HAS_SUMS(sums) true
+#define ADD_TO_SUM(sums, word, added) add_to_sum(word, added)
+uint add_to_sum(uint word, uint added);
+#endif
 
 #include "kernels/kernel.h"
 
@@ -19,7 +28,7 @@ storage(LAUNCH_BINDING) LaunchWords launch_words;
 storage_written(OUTPUT_BINDING) uint output_words[];
 // clang-format on
 
-#if defined(RAYS) || defined(SEGMENTS) || defined(ABSORB)
+#if defined(RAYS) || defined(SEGMENTS) || defined(TALLY) || defined(ABSORB)
 // clang-format off
 storage(RAYS_BINDING) uint4 rays[];
 // clang-format on
@@ -35,7 +44,7 @@ STRUCT(AnswerWords)
     uint sixth;
 };
 
-#if defined(SEGMENTS) || defined(ABSORB)
+#if defined(SEGMENTS) || defined(TALLY) || defined(ABSORB)
 #ifdef ABSORB
 #define ABSORBS true
 #else

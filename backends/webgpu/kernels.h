@@ -10,8 +10,10 @@ namespace tetrace::webgpu {
 /// Binding of the launch's words, LaunchWords of kernel.h, in every kernel; outputs have OUTPUT_BINDING.
 inline constexpr unsigned launch_binding = TETRACE_WEBGPU_LAUNCH_BINDING;
 
-/// The WGSL of a kernel in exact mode; empty if the build has none of that method, layout and task. Task tally has
-/// none. Given rays have RAYS_BINDING.
+/// Binding of the sums of task tally (sums.wgsl); given rays have RAYS_BINDING.
+inline constexpr unsigned sums_binding = 17;
+
+/// The WGSL of a kernel in exact mode; empty if the build has none of that method, layout and task.
 [[nodiscard]] std::string_view kernel_text(const KernelId& kernel);
 
 /// The WGSL of the self-test.

@@ -16,6 +16,16 @@ async function unpacked(text) {
 const array = number => unpacked(DATA.arrays[number]);
 const words_of = bytes => new Uint32Array(bytes.buffer, bytes.byteOffset, bytes.byteLength / 4);
 
+// As in bench/browser/answer_hash.cpp.
+function hash_of_words(words) {
+    let low = 0, high = 0;
+    for (const word of words) {
+        low = Math.imul(turned(low, 5) ^ word, 0x9E3779B1);
+        high = Math.imul(turned(high, 7) ^ Math.imul(word, 0x27D4EB2F), 0x85EBCA77);
+    }
+    return [low >>> 0, high >>> 0];
+}
+
 // The two hashes of a ray's answer, as bench/browser/answer_hash.cpp has them.
 function hash_of_ray(words, first, factor) {
     let h = 0x9E3779B9;
@@ -72,11 +82,12 @@ class Gpu {
         this.device.queue.writeBuffer(buffer, 0, bytes);
         return buffer;
     }
-    // bindings: of what it reads; its output has the one of outputs.
+    // bindings: of all but its output.
     async pipeline(code, bindings, constants) {
         const begin = performance.now(), module = this.device.createShaderModule({ code });
+        const written = [DATA.output_binding, DATA.sums_binding];
         const entries = [...bindings, DATA.output_binding].map(binding => ({
-            binding, visibility: GPUShaderStage.COMPUTE, buffer: { type: binding === DATA.output_binding ? "storage" : "read-only-storage" } }));
+            binding, visibility: GPUShaderStage.COMPUTE, buffer: { type: written.includes(binding) ? "storage" : "read-only-storage" } }));
         const layout = this.device.createPipelineLayout({ bindGroupLayouts: [this.device.createBindGroupLayout({ entries })] });
         const pipeline = await this.device.createComputePipelineAsync({ layout, compute: { module, entryPoint: "main", constants } });
         return { pipeline, compile_ms: performance.now() - begin };
@@ -152,6 +163,7 @@ class Session {
     async open() {
         const read = [DATA.launch_binding, ...this.kernel.arrays.map(({ binding }) => binding)];
         if (this.kernel.views.some(view => view.given_rays !== undefined)) read.push(DATA.rays_binding);
+        if (this.kernel.views.some(view => view.tally)) read.push(DATA.sums_binding);
         const { pipeline, compile_ms } = await this.gpu.pipeline(this.kernel.wgsl, read, { tile_height: DATA.tile_height });
         this.pipeline = pipeline;
         this.compile_ms = compile_ms;
@@ -159,6 +171,10 @@ class Session {
         this.output = this.gpu.buffer(new Uint32Array(2 * GUARD + WORDS * most), GPUBufferUsage.COPY_SRC);
         this.launch = this.gpu.device.createBuffer({ size: DATA.launch_words * 4, usage: GPUBufferUsage.STORAGE | GPUBufferUsage.COPY_DST });
         const buffers = [[DATA.output_binding, this.output], [DATA.launch_binding, this.launch]];
+        if (read.includes(DATA.sums_binding)) {
+            this.sums = this.gpu.buffer(new Uint32Array(2 * this.kernel.tets), GPUBufferUsage.COPY_SRC);
+            buffers.push([DATA.sums_binding, this.sums]);
+        }
         for (const { binding, array: number } of this.kernel.arrays) buffers.push([binding, this.gpu.buffer(await array(number))]);
         for (const view of this.kernel.views) {
             const rays = view.given_rays === undefined ? [] : [[DATA.rays_binding, this.gpu.buffer(await array(view.given_rays))]];
@@ -183,8 +199,14 @@ class Session {
     }
     async verified(view) {
         this.gpu.device.queue.writeBuffer(this.output, 0, new Uint32Array(2 * GUARD + WORDS * view.rays).fill(POISON));
-        const kernel_s = await this.trace(view);
-        return { kernel_s, ...await this.judged(view) };
+        if (this.sums) this.gpu.device.queue.writeBuffer(this.sums, 0, new Uint32Array(2 * this.kernel.tets));
+        const kernel_s = await this.trace(view), seen = await this.judged(view);
+        return { kernel_s, has_wrong_sums: this.sums && !await this.has_sums(view), ...seen };
+    }
+    // Of the one pass since they were 0.
+    async has_sums(view) {
+        const hash = hash_of_words(await this.gpu.words(this.sums, 2 * this.kernel.tets));
+        return hash[0] === view.tally[0] && hash[1] === view.tally[1];
     }
     // What is in the output, compared with the right answers to the view that was traced last.
     async judged(view) {
@@ -269,17 +291,17 @@ async function tell_first_wrong(record, scene, kernel, view, seen) {
 }
 
 function conformity_of(record) {
-    return record.outside ? "writes outside its output" : record.wrong ? `${record.wrong.toLocaleString("en")} ray${record.wrong === 1 ? "" : "s"} wrong` : "bit-exact";
+    return record.outside ? "writes outside its output" : record.has_wrong_sums ? "wrong sums of tets" : record.wrong ? `${record.wrong.toLocaleString("en")} ray${record.wrong === 1 ? "" : "s"} wrong` : "bit-exact";
 }
 
-// records: one for each kernel, in the order of the result's rows.
+// records: one for each kernel, in the order of the result's rows. Those of rows in error stay.
 function begin_records() {
-    const rows = DATA.result.tetrace.rows;
+    const rows = DATA.result.tetrace.rows, before = found.records;
     let number = 0;
     found.records = DATA.scenes.flatMap(scene => scene.kernels.map(kernel => ({
         hit_share: rows[number++].counts?.hit_share,
         kernel: kernel.name, scene: scene.name, rays: kernel.views.reduce((sum, view) => sum + view.rays, 0), wrong: 0, conformity: "",
-        samples_s: [], passes: 1, compile_ms: 0, first_kernel_s: 0, first_wall_s: 0, download_s: 0 })));
+        samples_s: [], passes: 1, compile_ms: 0, first_kernel_s: 0, first_wall_s: 0, download_s: 0 }))).map((record, i) => before[i]?.conformity === "error" ? before[i] : record);
 }
 
 async function verify_row(gpu, row) {
@@ -294,6 +316,7 @@ async function verify_row(gpu, row) {
         record.download_s += seen.download_s;
         record.wrong += seen.wrong;
         record.outside = record.outside || seen.outside;
+        record.has_wrong_sums = record.has_wrong_sums || seen.has_wrong_sums;
         if (kernel === scene.kernels[0] && view === kernel.views[0] && view.given_rays === undefined) draw(seen.words, scene, `${scene.name}, view ${view.number}`);
         await tell_first_wrong(record, scene, kernel, view, seen);
     }
@@ -305,6 +328,11 @@ async function verify(gpu, rows) {
     for (const scene of DATA.scenes) for (const kernel of scene.kernels) {
         if (stopped) return;
         const row = { record: found.records[number++], scene, kernel };
+        if (row.record.conformity === "error") { // it lost the device
+            show_row(row);
+            continue;
+        }
+        found.running = row.record;
         at("state").textContent = `compiling and verifying ${kernel.name} on ${scene.name}`;
         await next_frame();
         try {
@@ -313,9 +341,9 @@ async function verify(gpu, rows) {
         } catch (error) {
             row.record.conformity = "error";
             row.record.error = error.message;
-            if (error instanceof LostDevice) throw error;
             at("first-wrong").hidden = false;
             at("first-wrong").textContent += `${kernel.name}, ${scene.name}: ${error.message}\n`;
+            if (error instanceof LostDevice) throw error;
         }
         rows.push(row);
         show_row(row);
@@ -330,6 +358,7 @@ async function measure(rows, seconds) {
             await while_hidden();
             if (stopped) return;
             let sum = 0;
+            found.running = row.record;
             for (const view of row.kernel.views) sum += await row.session.trace(view, row.record.passes);
             if (round > 0) row.record.samples_s.push(sum);
             else row.record.passes = Math.max(1, Math.min(1000, Math.ceil(MIN_SAMPLE_S / sum)));
@@ -446,6 +475,7 @@ async function run() {
         } catch (error) {
             found.error = error.message;
             if (!(error instanceof LostDevice)) break;
+            if (found.running) Object.assign(found.running, { conformity: "error", error: error.message, samples_s: [] });
         }
     }
     finish();

@@ -22,6 +22,16 @@ std::uint32_t hash_of_ray(const Words& words, std::uint32_t factor)
 
 } // namespace
 
+std::array<std::uint32_t, 2> hash_of_words(std::span<const std::uint32_t> words)
+{
+    std::uint32_t low = 0, high = 0;
+    for (const std::uint32_t word : words) {
+        low = (std::rotl(low, 5) ^ word) * 0x9E3779B1u;
+        high = (std::rotl(high, 7) ^ (word * 0x27D4EB2Fu)) * 0x85EBCA77u;
+    }
+    return {low, high};
+}
+
 AnswerHashes answer_hashes(std::span<const Hit> hits)
 {
     AnswerHashes hashes;

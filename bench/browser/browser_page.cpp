@@ -128,6 +128,7 @@ json view_json(const PageView& view, ArrayStore& store)
                    {"tiles", tile_count(view.launch)},
                    {"hash", view.answers.view},
                    {"ray_hashes", store.add(view.answers.rays)}};
+    if (view.tally) object["tally"] = *view.tally;
     if (!view.given_rays.empty()) object["given_rays"] = store.add(view.given_rays);
     return object;
 }
@@ -144,6 +145,7 @@ json scene_json(const PageScene& scene, ArrayStore& store)
                                           ? "triangle, tet, t, u, v, steps"
                                           : "first tet, last tet, total, hash, reversed, crossings"},
                            {"wgsl", webgpu::kernel_text(kernel.kernel)},
+                           {"tets", kernel.packed->tet_count},
                            {"arrays", arrays_json(kernel, store)},
                            {"views", views}});
     }
@@ -180,7 +182,7 @@ PageView page_view(std::uint32_t number, const TraceJob& job, const PackedScene&
                    std::span<const Quad> given_rays, std::span<const Hit> hits)
 {
     return {number, launch_params(job, domain_of(packed), page_tile_height, TetParts{}.log2_bytes), given_rays,
-            answer_hashes(hits)};
+            answer_hashes(hits), std::nullopt};
 }
 
 bool has_page_kernel(const KernelId& kernel)
@@ -213,6 +215,7 @@ std::string browser_page(const std::vector<PageScene>& scenes, const json& resul
                  {"launch_binding", webgpu::launch_binding},
                  {"output_binding", OUTPUT_BINDING},
                  {"rays_binding", RAYS_BINDING},
+                 {"sums_binding", webgpu::sums_binding},
                  {"probe", probe_json()},
                  {"result", result},
                  {"scenes", json::array()}};

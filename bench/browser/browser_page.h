@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,8 +18,9 @@ namespace tetrace {
 struct PageView {
     std::uint32_t number = 0; ///< in the camera set
     LaunchParams launch = {};
-    std::span<const Quad> given_rays; ///< the caller keeps them alive; empty: the image's own
-    AnswerHashes answers;             ///< verified
+    std::span<const Quad> given_rays;                  ///< the caller keeps them alive; empty: the image's own
+    AnswerHashes answers;                              ///< verified
+    std::optional<std::array<std::uint32_t, 2>> tally; ///< hash_of_words() of the sums of task tally
 };
 
 /// number: of the view. job: of its rays. given_rays: as a session takes them; none for task trace. hits: its verified

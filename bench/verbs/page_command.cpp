@@ -36,13 +36,22 @@ std::vector<RowKey> page_rows(const Options& options)
             wanted.backends = {reference_backend().name()};
             for (RowKey& row : select_rows(wanted, {label})) {
                 if (!has_page_kernel(row.kernel))
-                    throw Error(ErrorKind::usage, fmt::format("page: a page has no kernel of {}; tasks are trace, "
-                                                              "segments and absorb",
-                                                              row_name(row)));
+                    throw Error(ErrorKind::usage, fmt::format("page: this build has no WGSL of {}", row_name(row)));
                 rows.push_back(std::move(row));
             }
         }
     return rows;
+}
+
+/// As kernels have sums: the lower word first.
+std::vector<std::uint32_t> words_of(const std::vector<std::uint64_t>& sums)
+{
+    std::vector<std::uint32_t> words;
+    for (const std::uint64_t sum : sums) {
+        words.push_back(static_cast<std::uint32_t>(sum));
+        words.push_back(static_cast<std::uint32_t>(sum >> 32));
+    }
+    return words;
 }
 
 /// The scenes with their kernels, as the rows are verified one after the other. Refers to the rows' packed scenes.
@@ -56,8 +65,9 @@ public:
                                                            *row.scene, row.key, &row.packed->data, image.view))
                                                      : std::span<const Quad>();
         if (image.hits.empty()) return; // given rays, of which this view has none
-        views_[row_name(row.key)].push_back(page_view(row.scene->view_numbers()[image.view], job_of(row, image.view),
-                                                      row.packed->data, given, image.hits));
+        PageView& view = views_[row_name(row.key)].emplace_back(page_view(
+            row.scene->view_numbers()[image.view], job_of(row, image.view), row.packed->data, given, image.hits));
+        if (traits_of(row.key.kernel.task).tallies) view.tally = hash_of_words(words_of(row.session->tally()));
     }
 
     PageKernel kernel_of(RowRun& row)

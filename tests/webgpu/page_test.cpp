@@ -233,10 +233,35 @@ TEST_F(SavedResult, has_no_rate_of_rows_that_are_wrong)
 
 TEST_F(SavedResult, has_given_rays_of_every_task_that_crosses_the_domain)
 {
-    save("--layout tet80 --task segments,absorb --rays diffuse --size 24 --views 1", "page.json");
+    save("--layout tet80 --task segments,tally,absorb --rays diffuse --size 24 --views 1,3", "page.json");
     const Ended shown = run("show page.json");
-    EXPECT_TRUE(contains(shown.out, "absorb maria tet80, diffuse")) << shown.out << shown.errors;
+    for (const char* const part : {"absorb maria tet80, diffuse", "tally maria tet80, diffuse"})
+        EXPECT_TRUE(contains(shown.out, part)) << shown.out << shown.errors;
     EXPECT_FALSE(contains(shown.out, "wrong:")) << shown.out;
+}
+
+TEST_F(SavedResult, says_which_sums_of_tets_are_wrong)
+{
+    save("--layout tet80 --task tally,segments --rays diffuse --size 24 --views 1", "page.json", [](std::string& page) {
+        page.insert(page.find("\"tally\":[") + 9, "1"); // not the hash of these sums
+    });
+    EXPECT_TRUE(contains(run("show page.json").out, "wrong: wrong sums of tets: not the answers of openmp"));
+    EXPECT_TRUE(contains(file("page.json"), "\"status\": \"ok\"")) << "the row of segments";
+}
+
+TEST_F(SavedResult, has_an_error_of_the_row_that_lost_the_device_and_all_other_rows)
+{
+    save("--layout bvh2,tet80,bvh4 --size 24 --views 1", "page.json", [](std::string& page) {
+        const std::string_view opened = "this.pipeline = pipeline;";
+        page.insert(page.find(opened), "if (this.kernel.name.includes(\"tet80\")) this.gpu.device.destroy(); ");
+    });
+    const nlohmann::json rows = nlohmann::json::parse(file("page.json")).at("tetrace").at("rows");
+    ASSERT_EQ(rows.size(), 3u);
+    EXPECT_EQ(rows[0].at("status"), "ok");
+    EXPECT_EQ(rows[1].at("status"), "error");
+    EXPECT_TRUE(contains(rows[1].at("reason"), "the device was lost")) << rows[1].at("reason");
+    EXPECT_EQ(rows[2].at("status"), "ok");
+    EXPECT_TRUE(rows[0].at("times").contains("samples_s"));
 }
 
 TEST_F(PageCommand, leaves_out_the_tets_that_no_ray_meets)
@@ -246,13 +271,6 @@ TEST_F(PageCommand, leaves_out_the_tets_that_no_ray_meets)
         return file("page.html").size();
     };
     EXPECT_GT(length_of("--size 64 --views 0,1,2,3"), length_of("--size 1 --views 0") + 100'000);
-}
-
-TEST_F(PageCommand, refuses_tasks_that_it_has_no_kernel_of)
-{
-    const Ended ended = run("page --layout tet64 --task tally --rays random");
-    EXPECT_EQ(ended.code, 2);
-    EXPECT_TRUE(contains(ended.errors, "a page has no kernel of tally/project/tet64")) << ended.errors;
 }
 
 TEST_F(PageCommand, has_its_kernels_dumped)

@@ -19,8 +19,11 @@ std::string text_of(const char* path)
 
 int main(int argc, char** argv)
 try {
-    if (argc != 5) throw tetrace::wgsl::TranslationError("usage: kernel_to_wgsl OUT IN PRELUDE MAIN");
-    const std::string text = text_of(argv[3]) + tetrace::wgsl::translate(text_of(argv[2])) + text_of(argv[4]);
+    if (argc < 5) throw tetrace::wgsl::TranslationError("usage: kernel_to_wgsl OUT IN PRELUDE... MAIN");
+    std::string text;
+    for (int i = 3; i + 1 < argc; ++i)
+        text += text_of(argv[i]);
+    text += tetrace::wgsl::translate(text_of(argv[2])) + text_of(argv[argc - 1]);
     std::ofstream out(argv[1], std::ios::binary);
     out << text << std::flush;
     if (!out) throw tetrace::wgsl::TranslationError(std::string(argv[1]) + ": cannot be written");
