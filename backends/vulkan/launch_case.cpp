@@ -2,7 +2,6 @@
 
 #include "backends/vulkan/kernels.h"
 #include "backends/vulkan/session.h"
-#include "backends/vulkan/specialized.h"
 
 #include <array>
 #include <cstring>
@@ -18,26 +17,20 @@ namespace vulkan {
 
 namespace {
 
-const EmbeddedKernel& kernel_of(std::span<const EmbeddedKernel> kernels, std::string_view name)
+std::string code_of(std::span<const EmbeddedKernel> kernels, std::string_view name)
 {
     const EmbeddedKernel* const kernel = find_kernel(kernels, name);
     if (kernel == nullptr) throw Error(ErrorKind::internal, "vulkan lacks program " + std::string(name));
-    return *kernel;
+    return std::string(kernel->text());
 }
 
-/// constants: by ID.
-LaunchCase case_of(std::span<const EmbeddedKernel> kernels, const std::string& name,
-                   std::span<const std::uint32_t> constants, std::uint32_t groups = 1)
+LaunchCase case_of(std::span<const EmbeddedKernel> kernels, const std::string& name, std::uint32_t groups = 1)
 {
-    const auto code = specialized(kernel_of(kernels, name).bytes, constants);
     LaunchCase made;
-    made.program = {name + ".spv",
-                    "the program, SPIR-V",
-                    {},
-                    std::string(reinterpret_cast<const char*>(code.data()), code.size() * sizeof(code[0]))};
+    made.program = {name + ".spv", "the program, SPIR-V", {}, code_of(kernels, name)};
     made.host = {"run_case.c", "a host in C, whose head says how to build and run it",
                  "cc -O1 -o run_case run_case.c -l:libvulkan.so.1 && ./run_case",
-                 std::string(kernel_of(vulkan_defects::embedded_kernels(), "run_case").text())};
+                 code_of(vulkan_defects::embedded_kernels(), "run_case")};
     made.lines = {"GROUPS " + std::to_string(groups)};
     return made;
 }
@@ -62,12 +55,13 @@ LaunchCase tile_case(const Device& device, const KernelId& kernel, const PackedS
                      std::span<const Quad> rays)
 {
     const bool in_texels = device.kind != DeviceKind::gpu;
+    LaunchCase made = case_of(embedded_kernels(), shader_name(kernel) + (in_texels ? "_texels" : ""));
     const bool starts_outside = kernel.task == Task::trace && launch.start_tet == NO_TET;
     const std::array<std::uint32_t, 5> constants = {launch.tile_height, starts_outside ? 1u : 0u, in_texels ? 1u : 0u,
                                                     in_texels ? 0u : STACK_TOP_OF_GPUS, 0u};
-    LaunchCase made = case_of(embedded_kernels(), shader_name(kernel) + (in_texels ? "_texels" : ""), constants);
     std::array<std::uint32_t, sizeof(LaunchParams) / sizeof(std::uint32_t)> pushed{};
     std::memcpy(pushed.data(), &launch, sizeof(launch));
+    made.lines.push_back(fmt::format("CONSTANTS {}", fmt::join(constants, ", ")));
     made.lines.push_back(fmt::format("PUSHED {:#x}", fmt::join(pushed, ", ")));
     const auto buffers = scene_buffers(scene);
     std::uint32_t bound = 0; // bits: an array that is read as words and as quads is one storage buffer
@@ -87,8 +81,8 @@ LaunchCase tile_case(const Device& device, const KernelId& kernel, const PackedS
 
 LaunchCase defect_case(std::string_view name, const DefectLaunch& launch)
 {
-    const std::array constants = {launch.group_items};
-    LaunchCase made = case_of(vulkan_defects::embedded_kernels(), std::string(name), constants, launch.groups());
+    LaunchCase made = case_of(vulkan_defects::embedded_kernels(), std::string(name), launch.groups());
+    made.lines.push_back("CONSTANTS " + std::to_string(launch.group_items));
     made.lines.push_back("PUSHED 0");
     const auto words = defect_words(launch);
     made.inputs = {case_input("buffer, 0", "words", "what the kernel reads", std::as_bytes(std::span(words)))};

@@ -16,9 +16,10 @@ static const struct {
     uint32_t binding;
     const char* file;
 } inputs[] = {INPUTS};
+static const uint32_t constants[] = {CONSTANTS}; /* of specialization, by ID */
 static const uint32_t pushed[] = {PUSHED};
 
-enum { INPUT_COUNT = sizeof(inputs) / sizeof(inputs[0]) };
+enum { INPUT_COUNT = sizeof(inputs) / sizeof(inputs[0]), CONSTANT_COUNT = sizeof(constants) / sizeof(constants[0]) };
 
 static VkPhysicalDevice physical;
 static VkDevice device;
@@ -146,6 +147,10 @@ static VkPipelineLayout make_layout(void)
 
 static VkPipeline make_pipeline(VkPipelineLayout layout)
 {
+    VkSpecializationMapEntry entries[CONSTANT_COUNT];
+    for (uint32_t i = 0; i < CONSTANT_COUNT; ++i)
+        entries[i] = (VkSpecializationMapEntry){i, 4 * i, 4};
+    VkSpecializationInfo values = {CONSTANT_COUNT, entries, sizeof(constants), constants};
     VkShaderModuleCreateInfo module_info = {VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
     module_info.pCode = read_file(PROGRAM, &module_info.codeSize);
     VkShaderModule module;
@@ -156,7 +161,7 @@ static VkPipeline make_pipeline(VkPipelineLayout layout)
                                              VK_SHADER_STAGE_COMPUTE_BIT,
                                              module,
                                              "main",
-                                             NULL};
+                                             &values};
     VkComputePipelineCreateInfo info = {VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO, NULL, 0, stage, layout};
     VkPipeline pipeline;
     check(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, NULL, &pipeline), "vkCreateComputePipelines");

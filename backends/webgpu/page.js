@@ -85,6 +85,8 @@ class Gpu {
     // bindings: of all but its output.
     async pipeline(code, bindings, constants) {
         const begin = performance.now(), module = this.device.createShaderModule({ code });
+        const problem = (await module.getCompilationInfo()).messages.find(message => message.type === "error");
+        if (problem) throw new Error(`line ${problem.lineNum} of its WGSL: ${problem.message}`);
         const written = [DATA.output_binding, DATA.sums_binding];
         const entries = [...bindings, DATA.output_binding].map(binding => ({
             binding, visibility: GPUShaderStage.COMPUTE, buffer: { type: written.includes(binding) ? "storage" : "read-only-storage" } }));
@@ -167,8 +169,8 @@ class Session {
         const { pipeline, compile_ms } = await this.gpu.pipeline(this.kernel.wgsl, read, { tile_height: DATA.tile_height });
         this.pipeline = pipeline;
         this.compile_ms = compile_ms;
-        const most = Math.max(...this.kernel.views.map(view => view.rays));
-        this.output = this.gpu.buffer(new Uint32Array(2 * GUARD + WORDS * most), GPUBufferUsage.COPY_SRC);
+        this.most_rays = Math.max(...this.kernel.views.map(view => view.rays));
+        this.output = this.gpu.buffer(new Uint32Array(2 * GUARD + WORDS * this.most_rays), GPUBufferUsage.COPY_SRC);
         this.launch = this.gpu.device.createBuffer({ size: DATA.launch_words * 4, usage: GPUBufferUsage.STORAGE | GPUBufferUsage.COPY_DST });
         const buffers = [[DATA.output_binding, this.output], [DATA.launch_binding, this.launch]];
         if (read.includes(DATA.sums_binding)) {
@@ -208,11 +210,13 @@ class Session {
         const hash = hash_of_words(await this.gpu.words(this.sums, 2 * this.kernel.tets));
         return hash[0] === view.tally[0] && hash[1] === view.tally[1];
     }
-    // What is in the output, compared with the right answers to the view that was traced last.
-    async judged(view) {
+    // What is in the output, compared with the right answers to the view that was traced last. is_sampled: other views
+    // were traced since there was poison, so the words after a smaller one's answers are theirs.
+    async judged(view, is_sampled = false) {
         const begin = performance.now(), count = 2 * GUARD + WORDS * view.rays, words = await this.gpu.words(this.output, count);
         const download_s = (performance.now() - begin) * 1e-3;
-        for (let i = 0; i < GUARD; ++i) if (words[i] !== POISON || words[count - 1 - i] !== POISON) return { words, download_s, outside: true, wrong: 0 };
+        const has_end = !is_sampled || view.rays === this.most_rays;
+        for (let i = 0; i < GUARD; ++i) if (words[i] !== POISON || (has_end && words[count - 1 - i] !== POISON)) return { words, download_s, outside: true, wrong: 0 };
         const hashes = hashes_of(words, view.rays);
         if (hashes.view[0] === view.hash[0] && hashes.view[1] === view.hash[1]) return { words, download_s, wrong: 0 };
         const expected = await array(view.ray_hashes);
@@ -285,9 +289,14 @@ async function first_wrong_text(record, scene, kernel, view, seen) {
 }
 
 async function tell_first_wrong(record, scene, kernel, view, seen) {
-    if (!seen.wrong || !at("first-wrong").hidden) return;
+    if (!seen.wrong || found.has_told) return;
+    found.has_told = true;
+    tell(await first_wrong_text(record, scene, kernel, view, seen));
+}
+
+function tell(text) {
     at("first-wrong").hidden = false;
-    at("first-wrong").textContent = await first_wrong_text(record, scene, kernel, view, seen);
+    at("first-wrong").textContent += text + "\n";
 }
 
 function conformity_of(record) {
@@ -341,8 +350,7 @@ async function verify(gpu, rows) {
         } catch (error) {
             row.record.conformity = "error";
             row.record.error = error.message;
-            at("first-wrong").hidden = false;
-            at("first-wrong").textContent += `${kernel.name}, ${scene.name}: ${error.message}\n`;
+            tell(`${kernel.name}, ${scene.name}: ${error.message}`);
             if (error instanceof LostDevice) throw error;
         }
         rows.push(row);
@@ -372,7 +380,7 @@ async function measure(rows, seconds) {
 // The answers of the last sample: a device may compute otherwise once it is hot.
 async function verify_again(rows) {
     for (const row of rows.filter(row => row.record.samples_s.length)) {
-        const view = row.kernel.views.at(-1), seen = await row.session.judged(view);
+        const view = row.kernel.views.at(-1), seen = await row.session.judged(view, true);
         row.record.wrong += seen.wrong;
         row.record.outside = row.record.outside || seen.outside;
         row.record.conformity = conformity_of(row.record);
@@ -420,6 +428,13 @@ function fill_row(row, record) {
     Object.assign(row, { status, reason });
 }
 
+function offer_result() {
+    const save = at("save");
+    save.href = "data:application/json," + encodeURIComponent(JSON.stringify(result_of(), null, 1));
+    save.download = "tetrace-webgpu.json";
+    save.hidden = false;
+}
+
 function finish() {
     const done = found.records.filter(record => record.conformity), bad = done.filter(record => record.conformity !== "bit-exact").length;
     const exact = found.self_test && found.self_test.exact, all = found.records.length;
@@ -430,20 +445,19 @@ function finish() {
         verdict === "stopped" ? `Stopped: ${done.length} of ${all} rows were verified.` :
         `FAILED: ${bad} of ${done.length} rows${exact ? "" : ", and the self-test"}.`;
     at("verdict").className = verdict === "conforms" ? "good" : "bad";
-    const save = at("save");
-    save.href = "data:application/json," + encodeURIComponent(JSON.stringify(result_of(), null, 1));
-    save.download = "tetrace-webgpu.json";
-    save.hidden = false;
+    offer_result();
+    at("label").oninput = offer_result;
     at("stop").hidden = true;
     document.body.dataset.verdict = verdict;
 }
 
 // As results name devices. Browsers tell little of the GPU, and some nothing.
 function device_of(adapter) {
-    const info = adapter.info || {}, browser = navigator.userAgent.match(/(Firefox|Edg|HeadlessChrome|Chrome|Version)\/[\d.]+/)?.[0] || "a browser";
+    const info = adapter.info || {}, agent = navigator.userAgent;
+    const browser = (agent.match(/(Edg|CriOS|FxiOS)\/[\d.]+/) || agent.match(/(Firefox|HeadlessChrome|Chrome|Version)\/[\d.]+/) || ["a browser"])[0];
     const name = [...new Set([info.vendor, info.architecture, info.device, info.description].filter(Boolean))].join(" ") || "a GPU that the browser does not name";
     const is_emulated = Boolean(info.isFallbackAdapter) || /swiftshader|llvmpipe/i.test(name);
-    const library = /Firefox/.test(browser) ? "wgpu" : /Version/.test(browser) ? "webkit" : "dawn";
+    const library = /Firefox/.test(browser) ? "wgpu" : /Version|CriOS|FxiOS/.test(browser) ? "webkit" : "dawn";
     const implementation = /swiftshader/i.test(name) ? library + "-swiftshader" : /llvmpipe/i.test(name) ? library + "-lavapipe" : library;
     return { name, id: name, type: is_emulated ? "emulated" : "gpu", driver: browser.replace("Version", "Safari"), implementation };
 }

@@ -382,8 +382,9 @@ double ResultComparison::error() const
 std::vector<const ComparedRow*> ResultComparison::regressions(bool allow_missing) const
 {
     std::vector<const ComparedRow*> found;
+    const bool may_lack = allow_missing || !share_an_api(*before, *after);
     for (const ComparedRow& row : rows)
-        if (row.outcome == RowOutcome::failed || (row.outcome == RowOutcome::missing && !allow_missing) ||
+        if (row.outcome == RowOutcome::failed || (row.outcome == RowOutcome::missing && !may_lack) ||
             (row.change && !row.is_noisy() && row.change->is_regression(tolerance)))
             found.push_back(&row);
     return found;

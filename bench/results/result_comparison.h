@@ -97,7 +97,7 @@ struct ResultComparison {
     /// or more where rows have few samples.
     [[nodiscard]] double error() const;
     /// The regressions of `after`: compared rows that are slower by more than the tolerance and not noisy, failed rows,
-    /// and missing ones unless those are allowed.
+    /// and missing ones unless those are allowed, or the two have no API in common.
     [[nodiscard]] std::vector<const ComparedRow*> regressions(bool allow_missing) const;
 };
 

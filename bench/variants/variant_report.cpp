@@ -22,6 +22,7 @@ nlohmann::json failure_json(const VariantFailure& failure)
                              {"changes", failure.changes},
                              {"reduced", failure.reduced},
                              {"tries", failure.tries}};
+    if (failure.is_unfinished) object["unfinished"] = true;
     if (failure.same_as) object["same_as"] = *failure.same_as;
     if (failure.different > 0) object["different_rays"] = failure.different;
     if (const auto& ray = failure.first_different)
@@ -46,6 +47,7 @@ nlohmann::json row_json_of(const VariantRow& row)
     if (!device.driver.empty()) object["driver"] = device.driver;
     if (!device.implementation.empty()) object["implementation"] = device.implementation;
     if (!row.reason.empty()) object["reason"] = row.reason;
+    if (row.fails_as_it_is) object["fails_as_it_is"] = true;
     for (const VariantFailure& failure : row.failures)
         object["failures"].push_back(failure_json(failure));
     return object;
@@ -87,8 +89,13 @@ std::string failure_text(const ResultValue& row, const ResultValue& failure)
     if (const auto different = failure.find("different_rays"))
         text += fmt::format(" ({})", counted(different->count(), "ray", "rays"));
     const std::string changes = counted(failure.at("changes").count(), "change", "changes");
-    text += reduced.empty() ? fmt::format("; its {} were not reduced", changes)
-                            : fmt::format("; of its {} are needed: {}", changes, fmt::join(reduced, ", "));
+    if (reduced.empty())
+        text += fmt::format("; its {} were not reduced", changes);
+    else if (failure.find("unfinished"))
+        text += fmt::format("; its {} were not reduced to fewer than {} when --budget or a signal ended that", changes,
+                            reduced.size());
+    else
+        text += fmt::format("; of its {} are needed: {}", changes, fmt::join(reduced, ", "));
     if (const std::string reason = failure.text_at("reason"); !reason.empty())
         text += "; " + printable_line(reason.substr(0, std::min<std::size_t>(reason.find('\n'), 200)));
     return text;
@@ -109,7 +116,7 @@ void add_failures(Sheet& sheet, const ResultValue& row)
                     (others == 0 ? "."
                                  : fmt::format("; and of {} more.",
                                                counted(static_cast<std::uint64_t>(others), "variant", "variants"))));
-        if (const std::string command = failure.text_at("command"); !command.empty())
+        if (const std::string command = failure.text_at("command"); !command.empty() && !failure.find("unfinished"))
             sheet.verbatim("  To get it: " + printable_line(command) + "\n");
     }
 }
@@ -126,13 +133,20 @@ std::string summary_of(const std::vector<ResultValue>& rows)
                        counted(rows.size(), "row", "rows"), counts[0], counts[1], counts[2]);
 }
 
+bool has_failed(const VariantRow& row)
+{
+    return row.fails_as_it_is || !row.failures.empty();
+}
+
 /// Empty if none ran.
 std::optional<CheckVerdict> verdict_of(const std::vector<VariantRow>& rows)
 {
     CheckTally tally{"variant", "variants"};
-    for (const VariantRow& row : rows)
+    for (const VariantRow& row : rows) {
+        if (row.fails_as_it_is) tally.add(device_label(row.row.key), true);
         for (std::size_t i = 0; i < row.ran; ++i)
             tally.add(device_label(row.row.key), i < row.failures.size());
+    }
     return tally.judged == 0 ? std::nullopt : std::optional(verdict_by_count(tally));
 }
 
@@ -148,7 +162,8 @@ ShownVariants shown_variants(const ResultValue& section)
     for (const ResultValue& row : rows) {
         add_failures(shown.sheet, row);
         if (const std::string reason = row.text_at("reason"); !reason.empty())
-            shown.sheet.labelled("Skipped", fmt::format("{}: {}", row.at("name").line(), printable_line(reason)));
+            shown.sheet.labelled(row.find("fails_as_it_is") ? "Failed" : "Skipped",
+                                 fmt::format("{}: {}", row.at("name").line(), printable_line(reason)));
     }
     shown.sheet.labelled("Verified", summary_of(rows));
     if (const std::uint64_t asked = variants.at("asked").count(); std::ranges::any_of(
@@ -193,9 +208,9 @@ std::string variant_junit(const std::vector<VariantRow>& rows, const std::string
         for (const VariantFailure& failure : row.failures)
             reason += fmt::format("variant {}: {}: {} {}\n", failure.number, name_of(failure.sight),
                                   fmt::join(failure.reduced, ", "), failure.reason);
-        const CaseOutcome outcome = !row.failures.empty() ? CaseOutcome::failed
-                                    : row.ran == 0        ? CaseOutcome::skipped
-                                                          : CaseOutcome::passed;
+        const CaseOutcome outcome = has_failed(row) ? CaseOutcome::failed
+                                    : row.ran == 0  ? CaseOutcome::skipped
+                                                    : CaseOutcome::passed;
         const Device& device = row.row.device;
         cases.push_back({row.row.key.backend, device_label(row.row.key), device.name, device.driver,
                          "variants/" + row_name(row.row.key), outcome, reason, 0, fmt::format("{} variants", row.ran),
@@ -206,8 +221,7 @@ std::string variant_junit(const std::vector<VariantRow>& rows, const std::string
 
 int exit_code(const std::vector<VariantRow>& rows)
 {
-    if (std::ranges::any_of(rows, [](const VariantRow& row) { return !row.failures.empty(); }))
-        return exit_code(ErrorKind::wrong_result);
+    if (std::ranges::any_of(rows, has_failed)) return exit_code(ErrorKind::wrong_result);
     const bool any_ran = std::ranges::any_of(rows, [](const VariantRow& row) { return row.ran > 0; });
     return any_ran ? 0 : exit_code(ErrorKind::missing);
 }

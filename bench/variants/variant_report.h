@@ -27,7 +27,7 @@ struct ShownVariants {
 /// One suite, a test case for each row, which fails if a variant does. problem: as in junit_xml().
 [[nodiscard]] std::string variant_junit(const std::vector<VariantRow>& rows, const std::string& problem = {});
 
-/// 1 if a variant failed, 3 if none ran, else 0.
+/// 1 if a variant failed, or a kernel as it is; 3 if none ran; else 0.
 [[nodiscard]] int exit_code(const std::vector<VariantRow>& rows);
 
 } // namespace tetrace

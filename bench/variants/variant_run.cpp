@@ -44,6 +44,7 @@ public:
         if (answers == nullptr || !has_answers(row)) {
             result_.reason = fmt::format("{} with its text as it is{}", name_of(status_of(row)),
                                          reason_of(row).empty() ? "" : ": " + reason_of(row));
+            result_.fails_as_it_is = status_of(row) == Status::wrong || status_of(row) == Status::error;
             return;
         }
         hashes_ = answers->view_hashes;
@@ -67,6 +68,7 @@ public:
             result_.made += changes.size();
             if (seen.sight != VariantSight::right) note_failure(number, changes, seen);
         } catch (const Error& error) {
+            if (error.kind() == ErrorKind::interrupted) return interrupt(); // what ran by then is the result
             if (error.kind() != ErrorKind::missing) throw;
             result_.reason = error.what();
         }
@@ -127,7 +129,7 @@ private:
             }
         if (!failure.same_as && causes_.size() < max_causes) {
             reduced = reduce(changes, failure);
-            causes_[number] = {seen.sight, reduced};
+            if (!failure.is_unfinished) causes_[number] = {seen.sight, reduced};
         }
         for (const std::size_t change : reduced)
             failure.reduced.push_back(program_->text().changes()[change].name);
@@ -138,14 +140,22 @@ private:
     [[nodiscard]] Indices reduce(const Indices& changes, VariantFailure& failure)
     {
         return smallest_failing(changes, [&](const Indices& tried) {
-            if (!may_go_on()) return false;
+            failure.is_unfinished = failure.is_unfinished || !may_go_on();
+            if (failure.is_unfinished) return false;
             progress_line().show(fmt::format("reducing variant {}", failure.number), -1, -1, row_label(row_->key));
-            ++failure.tries;
-            const Seen seen = look(tried);
-            if (seen.sight != failure.sight) return false;
-            failure.first_different = seen.first;
-            failure.reason = printable_text(seen.reason);
-            return true;
+            try {
+                const Seen seen = look(tried);
+                ++failure.tries;
+                if (seen.sight != failure.sight) return false;
+                failure.first_different = seen.first;
+                failure.reason = printable_text(seen.reason);
+                return true;
+            } catch (const Error& error) {
+                if (error.kind() != ErrorKind::interrupted && error.kind() != ErrorKind::missing) throw;
+                if (error.kind() == ErrorKind::interrupted) interrupt();
+                failure.is_unfinished = true;
+                return false;
+            }
         });
     }
 

@@ -27,6 +27,7 @@ struct VariantFailure {
     VariantSight sight = VariantSight::wrong;
     std::size_t changes = 0;                          ///< how many it has
     std::vector<std::string> reduced;                 ///< the fewest that were seen to fail alike; empty: not reduced
+    bool is_unfinished = false;                       ///< the reduction ended early: fewer changes may do
     std::optional<std::uint32_t> same_as;             ///< an earlier variant, whose reduced changes it has too
     std::uint32_t tries = 0;                          ///< of the reduction
     std::uint64_t different = 0;                      ///< rays, of the view of first_different, with all its changes
@@ -42,7 +43,8 @@ struct VariantRow {
     std::size_t made = 0;    ///< changes of all variants that ran
     std::uint32_t ran = 0;
     std::vector<VariantFailure> failures;
-    std::string reason; ///< why none ran; empty if they should
+    std::string reason;          ///< why none ran; empty if they should
+    bool fails_as_it_is = false; ///< the text as it is is wrong, or its driver fails; then none runs
 
     [[nodiscard]] std::size_t count(VariantSight sight) const;
 };

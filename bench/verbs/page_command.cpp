@@ -21,13 +21,21 @@ namespace tetrace {
 
 namespace {
 
+std::vector<Layout> without_repetitions(const std::vector<Layout>& layouts)
+{
+    std::vector<Layout> all;
+    for (const Layout layout : layouts)
+        if (std::ranges::find(all, layout) == all.end()) all.push_back(layout);
+    return all;
+}
+
 /// openmp's rows of each layout, by the method that has rows by default: their answers are those that the page compares
 /// with. Throws Error{usage} if a page has no kernel of a row.
 std::vector<RowKey> page_rows(const Options& options)
 {
     std::vector<RowKey> rows;
     for (const std::string& label : scene_labels(options))
-        for (const Layout layout : options.layouts) {
+        for (const Layout layout : without_repetitions(options.layouts)) {
             require_page_layout(layout);
             Options wanted = options;
             wanted.layouts = {layout};
@@ -72,6 +80,9 @@ public:
 
     PageKernel kernel_of(RowRun& row)
     {
+        if (views_[row_name(row.key)].empty())
+            throw Error(ErrorKind::usage,
+                        fmt::format("page: {}: no view has such rays; take other views (--views)", row_name(row.key)));
         packed_.push_back(std::make_unique<PackedScene>(with_met_parts_only(row)));
         return {kernel_title(row.key), row.key.kernel, packed_.back().get(), std::move(views_[row_name(row.key)])};
     }
@@ -152,6 +163,7 @@ nlohmann::json page_result(const SceneRows& run, const Options& options)
 int page_command(const Options& options)
 {
     const std::filesystem::path path = options.out.value_or("tetrace.html");
+    if (path != "-") check_writable("--out", path);
     Options wanted = options;
     if (wanted.scenes.empty()) wanted.scenes = {"cubes"};
     if (wanted.layouts.empty()) wanted.layouts = {Layout::tet64, Layout::bvh2};

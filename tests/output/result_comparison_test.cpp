@@ -469,6 +469,7 @@ TEST_F(ResultComparisons, of_two_apis_are_of_answers_alone)
     other["hit_hash"] = "00000000000000fe";
     EXPECT_TRUE(contains(error_of([&] { (void)compare(result_of({row}), result_of({other})); }),
                          "hit hash 00000000000000ff in A and 00000000000000fe in B"));
+    EXPECT_TRUE(compare(result_of({row, under("opencl", row)}), result_of({slower})).regressions(false).empty());
     // A row of an API that both have is not another API's.
     const ResultComparison shared =
         compare(result_of({row, under("opencl", row)}), result_of({slower, under("opencl", row)}));

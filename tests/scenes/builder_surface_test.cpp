@@ -71,7 +71,7 @@ TEST(SelfIntersection, finds_none_in_the_catalogue_s_procedural_meshes_but_the_p
 {
     for (const CatalogueEntry& row : catalogue())
         for (const std::uint32_t triangles : {row.procedural ? row.procedural->least : 0, 9'000u, 40'000u})
-            if (row.procedural) {
+            if (row.procedural && row.procedural->make != nullptr) {
                 TriangleMesh mesh = row.procedural->make(triangles);
                 EXPECT_EQ(clean_up(mesh), CleanUp{}) << row.name << " in " << triangles;
                 place(mesh, DomainKind::tight);

@@ -1,5 +1,6 @@
 // Variants by the program: of right compilers all have the right hits; of a wrong one the smallest change that shows it
 // is found, and written as a case.
+#include "bench/variants/variant_report.h"
 #include "tests/support/program_fixture.h"
 
 #include <gtest/gtest.h>
@@ -118,4 +119,40 @@ TEST_F(CheckVariants, of_a_compiler_that_crashes_are_failures_and_not_the_end)
     ASSERT_EQ(row.at("failures").size(), 1u) << row;
     EXPECT_EQ(row.at("failures").at(0).at("outcome"), "not compiled");
     EXPECT_EQ(row.at("failures").at(0).at("reduced"), nlohmann::json({"other_face/struct"}));
+}
+
+TEST_F(CheckVariants, that_a_signal_ends_in_a_reduction_are_a_result)
+{
+    const std::string slow = "if grep -q variant_of_other_face_all \"$text\"; then\n"
+                             "  echo x >> " +
+                             (folder_.path() / "crashes").string() +
+                             "\n"
+                             "  if test $(wc -l < " +
+                             (folder_.path() / "crashes").string() +
+                             ") = 3; then kill -TERM $PPID; sleep 30; fi\n"
+                             "  kill -SEGV $$\nfi\nexec \"$real\" \"$@\"";
+    const Ended ended = check_with(slow, std::string("check --backend vulkan --out checked.json --junit checked.xml ") +
+                                             crashing_at + kernel);
+    if (ended.code == 3) GTEST_SKIP() << ended.errors;
+    ASSERT_EQ(ended.code, 130) << ended.out << ended.errors;
+    const auto found = variants();
+    const auto& failures = found.at("rows").at(0).at("failures");
+    ASSERT_EQ(failures.size(), 1u) << failures;
+    EXPECT_EQ(failures.at(0).at("unfinished"), true) << failures;
+    EXPECT_TRUE(contains(ended.out, "reduced to fewer than ")) << ended.out;
+    EXPECT_TRUE(contains(file("checked.xml"), "<failure")) << file("checked.xml");
+}
+
+TEST(VariantRows, whose_text_as_it_is_fails_fail_the_check)
+{
+    VariantRow right, failing;
+    right.row.key.backend = failing.row.key.backend = "vulkan";
+    right.ran = 2;
+    failing.reason = "error with its text as it is: it hangs";
+    EXPECT_EQ(exit_code({right, failing}), 0) << "skipped";
+    failing.fails_as_it_is = true;
+    EXPECT_EQ(exit_code({right, failing}), 1);
+    EXPECT_TRUE(contains(variant_junit({right, failing}), "failures=\"1\""));
+    const Report report = variant_report({right, failing}, {}, {}, {});
+    EXPECT_TRUE(contains(report.sheet.text({}), "FAILED    1 of 3 variants")) << report.sheet.text({});
 }
