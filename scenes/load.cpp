@@ -82,7 +82,8 @@ std::uint64_t MeshSceneLoader::hash_mesh() const
     std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
     fs::path file = mesh_;
     // Tets and vertices are in both files; points without tets in one.
-    if (extension == ".node" && fs::exists(fs::path(mesh_).replace_extension(".ele")))
+    std::error_code ignored; // then the points have no tets
+    if (extension == ".node" && fs::exists(fs::path(mesh_).replace_extension(".ele"), ignored))
         file.replace_extension(extension = ".ele");
     if (add_file(hasher, file) == 0)
         throw Error(ErrorKind::invalid_input,

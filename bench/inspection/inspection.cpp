@@ -251,8 +251,8 @@ std::string failures_text(const Inspection& inspection)
         const std::string name =
             fmt::format("{} {} {}", row.target.name, name_of(row.point.kernel), name_of(row.point));
         if (decides_fused(row))
-            text += fmt::format("{}: {} fused operations decide signs; the first is '{}'\n", name, *row.fused,
-                                row.first_fused);
+            text += fmt::format("{}: {} fused operations decide signs{}\n", name, *row.fused,
+                                row.first_fused.empty() ? "" : fmt::format("; the first is '{}'", row.first_fused));
         if (row.status == InspectedStatus::error) text += fmt::format("{}: {}\n", name, row.reason);
     }
     return text;

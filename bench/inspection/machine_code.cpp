@@ -237,7 +237,7 @@ CodeFigures read_hip(std::string_view text, const std::string& entry)
     figures.divisions = divisions;
     constexpr std::uint64_t fused_of_division = 5;
     if (figures.fused >= fused_of_division * divisions) figures.fused -= fused_of_division * divisions;
-    if (figures.fused == 0) figures.first_fused.clear();
+    if (figures.fused == 0 || divisions > 0) figures.first_fused.clear(); // the first is perhaps a division's
     return figures;
 }
 

@@ -17,6 +17,11 @@ double volume_of(const TetMesh& mesh, std::uint32_t tet)
 
 } // namespace
 
+bool LineTest::is_testable() const
+{
+    return groups > 0 && lines >= 4 * groups;
+}
+
 double LineTest::reach() const
 {
     return 6 * std::sqrt(2 / static_cast<double>(groups));
@@ -24,7 +29,7 @@ double LineTest::reach() const
 
 bool LineTest::passes() const
 {
-    return groups > 0 && lines > 0 && std::abs(chi_square - 1) < reach();
+    return is_testable() && std::abs(chi_square - 1) < reach();
 }
 
 UniformLines::UniformLines(const Scene& scene, std::span<const std::uint32_t> mesh_of_packed)
@@ -82,7 +87,7 @@ LineTest UniformLines::test() const
         const double mean = sums_[i] / count, expected = 4 * volumes_[i] / surface_;
         const double variance = squares_[i] / count - mean * mean;
         test.mean_length += mean;
-        test.chi_square += count * (mean - expected) * (mean - expected) / variance;
+        if (variance > 0) test.chi_square += count * (mean - expected) * (mean - expected) / variance;
     }
     test.chi_square /= static_cast<double>(test.groups);
     return test;

@@ -17,6 +17,8 @@ struct LineTest {
     double expected_length = 0; ///< 4 V / S of the domain
     double chi_square = 0;      ///< per group: squares of what the mean length in a group is off, over its variance
 
+    /// Whether there are lines enough for the law to be tested.
+    [[nodiscard]] bool is_testable() const;
     /// How far chi_square may be from 1: six standard deviations.
     [[nodiscard]] double reach() const;
     [[nodiscard]] bool passes() const;

@@ -128,17 +128,26 @@ std::string title_of(const RowRun& row, std::size_t view, bool names_tets)
     return title;
 }
 
+/// Opens the rows of all pictures of what rays cross, before the first picture is written.
+void open_crossing_rows(Subject& subject, const std::vector<Picture>& pictures, const Options& options)
+{
+    for (const Picture picture : pictures) {
+        const CrossedPicture* const crossed = crossed_picture(picture);
+        if (crossed == nullptr || !subject.crossing[crossed->task].empty()) continue;
+        for (const auto& scene : subject.scenes)
+            subject.crossing[crossed->task].push_back(open_first_row(*scene, crossing_options(options, crossed->task)));
+    }
+}
+
 /// What each ray of the view crosses in each kind of tets.
-std::vector<StepsImage> cross_all(Subject& subject, std::size_t view, const CrossedPicture& picture,
-                                  const Options& options)
+std::vector<StepsImage> cross_all(Subject& subject, std::size_t view, const CrossedPicture& picture)
 {
     std::vector<RowRun>& rows = subject.crossing[picture.task];
-    if (rows.empty())
-        for (const auto& scene : subject.scenes)
-            rows.push_back(open_first_row(*scene, crossing_options(options, picture.task)));
     std::vector<StepsImage> images;
-    for (RowRun& row : rows)
+    for (RowRun& row : rows) {
         images.push_back({values_at_pixels(row, view, picture), title_of(row, view, rows.size() > 1), picture.what});
+        tell_lost_rays(row, view, images.back().hits);
+    }
     return images;
 }
 
@@ -166,6 +175,7 @@ void render_subject(Subject& subject, const Options& options, const PictureFiles
     const SceneWork& scene = subject.first();
     const bool only_picture = only_scene && scene.views().size() == 1 && pictures.size() == 1;
     refuse_steps_without_tets(subject.rows.front(), pictures);
+    open_crossing_rows(subject, pictures, options);
     for (std::size_t view = 0; view < scene.views().size(); ++view) {
         progress_line().show("rendering " + scene.label(),
                              static_cast<double>(view) / static_cast<double>(scene.views().size()));
@@ -176,7 +186,7 @@ void render_subject(Subject& subject, const Options& options, const PictureFiles
             files.write({scene.label(), scene.view_numbers()[view], picture}, only_picture,
                         crossed == nullptr
                             ? draw(picture, images, scene, view)
-                            : draw_steps(cross_all(subject, view, *crossed, options), scene.width(), scene.height()));
+                            : draw_steps(cross_all(subject, view, *crossed), scene.width(), scene.height()));
         }
     }
 }

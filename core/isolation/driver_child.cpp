@@ -178,7 +178,8 @@ std::string DriverChild::await_answer(double limit_s, bool compiles) const
         if (worked_s < busy_share * waited_s)
             idle_s += waited_s;
         else
-            busy_s += std::max(worked_s, waited_s / 4);
+            busy_s +=
+                std::clamp(worked_s, waited_s / 4, waited_s); // several threads are charged no more than the clock
         if (busy_s >= compiler_patience * limit_s)
             return "gave no answer for " + number_text(compiler_patience * limit_s) + " s of processor time";
     }

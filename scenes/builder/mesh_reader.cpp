@@ -84,7 +84,7 @@ MeshSoup read_mesh(const std::filesystem::path& given)
 {
     std::filesystem::path path = given;
     std::error_code ignored; // then the points have no tets
-    if (path.extension() == ".node")
+    if (lower_case(path.extension().string()) == ".node")
         if (const auto tets = std::filesystem::path(path).replace_extension(".ele");
             std::filesystem::exists(tets, ignored))
             path = tets;

@@ -4,6 +4,7 @@
 #include "tests/support/crossed_tets.h"
 #include "tests/support/given_scene.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
 
 using namespace tetrace;
@@ -45,4 +46,14 @@ TEST(UniformLines, other_rays_do_not_have_it)
     const GivenScene given{64, false, 6};
     const CrossedScene tets(given.scene, Method::project, Layout::half32);
     EXPECT_FALSE(tested(given, tets.walks(make_rays(RayKind::primary, given.source())), tets).passes());
+}
+
+TEST(UniformLines, are_not_judged_by_fewer_than_four_per_group)
+{
+    const GivenScene given{8, false, 6};
+    const CrossedScene tets(given.scene, Method::project, Layout::half32);
+    const LineTest few = tested(given, tets.walks(make_rays(RayKind::random, given.source())), tets);
+    EXPECT_EQ(few.lines, 64u);
+    EXPECT_FALSE(few.is_testable());
+    EXPECT_TRUE(std::isfinite(few.chi_square));
 }
