@@ -119,7 +119,7 @@ void take_hip(Inspected& row, const HipCode& code, const std::string& entry)
     row.first_fused = printable_line(figures.first_fused);
 }
 
-/// Without the prefix that tells it from RADV's.
+/// Without the prefix, which RADV's targets lack.
 std::string chip_of(const Target& target)
 {
     return target.name.substr(std::string(hip_prefix).size());

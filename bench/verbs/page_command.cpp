@@ -98,8 +98,8 @@ void require_right(const std::vector<RowRun>& rows)
     for (const RowRun& row : rows)
         if (status_of(row) != Status::ok)
             throw Error(row.session == nullptr ? ErrorKind::missing : ErrorKind::wrong_result,
-                        fmt::format("page: {} is {}: {}; a page judges by these answers, so leave out its --layout",
-                                    row_name(row.key), name_of(status_of(row)), reason_of(row)));
+                        fmt::format("page: {} is {}, and a page judges by these answers: {}", row_name(row.key),
+                                    name_of(status_of(row)), reason_of(row)));
 }
 
 PageScene page_scene(const SceneWork& scene)
