@@ -36,7 +36,7 @@ protected:
     void expect_hits(std::size_t device, const KernelId& kernel, const SceneData& data,
                      const std::vector<Expected>& all, const SessionOptions& options)
     {
-        const auto session = backend.open(device, kernel, data, options);
+        const auto session = open(device, kernel, data, options);
         for (const Expected& right : all)
             EXPECT_EQ(wrong_rays(device, traced(*session, right.job), right.hits), 0u)
                 << backend.devices()[device].name << ' ' << name_of(kernel) << ' ' << name_of(kernel.schedule) << ' '
@@ -97,7 +97,7 @@ TEST_P(DeviceHits, find_openmps_hits_with_the_tets_in_parts_or_refuse_to_cut_the
                     expect_hits(device, {.layout = layout}, rays.data(), all, options);
                 else
                     EXPECT_TRUE(error_of([&] {
-                                    (void)backend.open(device, {.layout = layout}, rays.data(), options);
+                                    (void)open(device, {.layout = layout}, rays.data(), options);
                                 }).starts_with("unsupported: "));
             }
         }
@@ -121,7 +121,7 @@ TEST_P(DeviceHits, find_the_same_faces_in_fast_mode_but_for_rays_on_edges)
     const auto right = openmp_hits(rays, job);
     for (const std::size_t device : usable) {
         if (const auto reason = backend.why_not(device, kernel); !reason.empty()) GTEST_SKIP() << reason;
-        const auto session = backend.open(device, kernel, rays.data(), {});
+        const auto session = open(device, kernel, rays.data());
         EXPECT_LE(distant_rays(traced(*session, job), right), right.size() / 1000);
     }
 }

@@ -40,7 +40,7 @@ TEST_P(DeviceSearches, find_openmps_exits_for_each_method_and_layout)
         const PackedScene tets = search_tets(39, kernel.layout);
         const auto on_host = openmp_backend().open(0, kernel, {nullptr, &tets}, {.threads = 2});
         for (const std::size_t device : usable) {
-            const auto session = backend.open(device, kernel, {nullptr, &tets}, {.threads = 2});
+            const auto session = open(device, kernel, {nullptr, &tets}, {.threads = 2});
             for (const SearchRays* rays : {&first, &second, &first})
                 EXPECT_EQ(searched(*session, *rays), searched(*on_host, *rays)) << name_of(kernel);
         }
@@ -53,7 +53,7 @@ TEST_P(DeviceSearches, search_exits_of_the_rays_that_they_were_given_last)
     const PackedScene tets = search_tets(2, kernel.layout);
     const auto first = search_rays(0, 1, 4096), second = search_rays(1, 1, 4096); // as many
     for (const std::size_t device : usable) {
-        const auto session = backend.open(device, kernel, {nullptr, &tets}, {});
+        const auto session = open(device, kernel, {nullptr, &tets});
         session->set_rays(first.quads);
         session->launch(search_job(first.count())); // nobody waits for it
         EXPECT_EQ(wrong_searches(second, searched(*session, second)), 0u);
@@ -67,7 +67,7 @@ TEST_P(DeviceSearches, refuse_rays_that_exceed_a_buffer)
     const PackedScene tets = search_tets(1, kernel.layout);
     const auto rays = search_rays(0, 1, 2048);
     for (const std::size_t device : usable) {
-        const auto session = backend.open(device, kernel, {nullptr, &tets}, {.max_buffer_bytes = 50'000});
+        const auto session = open(device, kernel, {nullptr, &tets}, {.max_buffer_bytes = 50'000});
         const std::string problem = error_of([&] { session->set_rays(rays.quads); });
         EXPECT_TRUE(problem.starts_with("unsupported: ")) << problem;
         EXPECT_TRUE(contains(problem, "98304") && contains(problem, "50000; give fewer")) << problem;

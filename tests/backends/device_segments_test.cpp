@@ -33,7 +33,7 @@ TEST_P(DeviceSegments, have_openmps_bits_for_each_method_and_layout)
         if (kernel.layout == Layout::tet96) continue; // the text of tet80's kernels; compiling each takes a second
         const CrossedScene tets(cubes.scene, kernel.method, kernel.layout, kernel.task);
         for (const std::size_t device : usable) {
-            const auto session = backend.open(device, kernel, {&cubes.scene.mesh, &tets.packed()}, {});
+            const auto session = open(device, kernel, {&cubes.scene.mesh, &tets.packed()});
             for (const RaySet& set : sets)
                 EXPECT_EQ(different_answers(tets.answers(*session, set), tets.answers(set)), 0u)
                     << backend.devices()[device].name << ' ' << name_of(kernel);
@@ -49,7 +49,7 @@ TEST_P(DeviceSegments, have_openmps_sums_per_tet_in_any_number_of_passes)
         const CrossedScene tets(cubes.scene, kernel.method, kernel.layout, Task::tally);
         const auto reference = tets.session(1);
         for (const std::size_t device : usable) {
-            const auto session = backend.open(device, kernel, {&cubes.scene.mesh, &tets.packed()}, {});
+            const auto session = open(device, kernel, {&cubes.scene.mesh, &tets.packed()});
             for (const RaySet& set : sets) {
                 const std::vector<Hit> expected = tets.answers(*reference, set);
                 EXPECT_EQ(different_answers(tets.answers(*session, set), expected), 0u) << name_of(kernel);

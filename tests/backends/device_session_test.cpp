@@ -20,7 +20,7 @@ TEST_P(DeviceSessions, give_the_same_hits_when_a_job_is_launched_twice)
 {
     const DeviceRays rays(make_cubes(4), Layout::tet80);
     for (const std::size_t device : usable) {
-        const auto session = backend.open(device, {}, rays.data(), {});
+        const auto session = open(device, {}, rays.data());
         const auto first = traced(*session, rays.from_outside(50, 50));
         (void)traced(*session, rays.from_inside(20, 90));
         EXPECT_EQ(traced(*session, rays.from_outside(50, 50)), first);
@@ -35,7 +35,7 @@ TEST_P(DeviceSessions, give_the_same_hits_after_several_passes_in_either_schedul
         for (const Schedule schedule : {Schedule::tiles, Schedule::persistent}) {
             const KernelId kernel{.schedule = schedule};
             if (!backend.why_not(device, kernel).empty()) continue;
-            const auto session = backend.open(device, kernel, rays.data(), {});
+            const auto session = open(device, kernel, rays.data());
             for (const std::uint32_t passes : {1u, 5u, 2u}) { // the first image is launched in steps
                 job.passes = passes;
                 EXPECT_EQ(wrong_rays(device, traced(*session, job), openmp_hits(rays, job)), 0u) << passes;
@@ -52,7 +52,7 @@ TEST_P(DeviceSessions, give_the_hits_of_single_launches_to_jobs_that_are_in_flig
             for (const Schedule schedule : {Schedule::tiles, Schedule::persistent}) {
                 const KernelId kernel{.method = Method::project, .layout = layout, .schedule = schedule};
                 if (!backend.why_not(device, kernel).empty()) continue;
-                const auto session = backend.open(device, kernel, rays.data(), {});
+                const auto session = open(device, kernel, rays.data());
                 std::vector<Hit> single;
                 for (const TraceJob& job : all)
                     for (const Hit& hit : traced(*session, job))
@@ -75,7 +75,7 @@ TEST_P(DeviceSessions, give_joined_jobs_right_hits_in_a_sessions_first_launch_an
     const std::vector jobs(5, rays.from_outside(300, 200)); // in several launches, which hold parts of two jobs
     const std::vector<Hit> right = openmp_hits(rays, jobs[0]);
     for (const std::size_t device : usable) {
-        const auto session = backend.open(device, {}, rays.data(), {});
+        const auto session = open(device, {}, rays.data());
         for (int time = 0; time < 2; ++time) {
             session->launch(jobs);
             std::vector<Hit> hits(jobs.size() * right.size());
@@ -95,7 +95,7 @@ TEST_P(DeviceSessions, refuse_jobs_whose_hits_together_exceed_the_largest_buffer
     const DeviceRays rays(make_cubes(3), Layout::tet80);
     const TraceJob job = rays.from_outside(64, 64);
     for (const std::size_t device : usable) {
-        const auto session = backend.open(device, {}, rays.data(), {.max_buffer_bytes = 250'000});
+        const auto session = open(device, {}, rays.data(), {.max_buffer_bytes = 250'000});
         const std::vector<Hit> hits = traced(*session, job);
         const std::string error = error_of([&] { session->launch(std::array{job, job, job}); });
         EXPECT_TRUE(contains(error, "250000") && contains(error, "fewer at once")) << error;
@@ -112,7 +112,7 @@ TEST_P(DeviceSessions, take_longer_for_more_passes_in_either_schedule)
         for (const Schedule schedule : {Schedule::tiles, Schedule::persistent}) {
             const KernelId kernel{.schedule = schedule};
             if (!backend.why_not(device, kernel).empty()) continue;
-            const auto session = backend.open(device, kernel, rays.data(), {});
+            const auto session = open(device, kernel, rays.data());
             (void)traced(*session, job); // the first image is launched in steps
             const auto seconds = [&](std::uint32_t passes) {
                 job.passes = passes;
@@ -133,7 +133,7 @@ TEST_P(DeviceSessions, give_whole_hits_before_anybody_waits)
     const DeviceRays rays(make_cubes(8), Layout::tet80);
     const TraceJob job = rays.from_outside(800, 800);
     for (const std::size_t device : usable) {
-        const auto session = backend.open(device, {}, rays.data(), {});
+        const auto session = open(device, {}, rays.data());
         (void)traced(*session, job); // the next one is not launched in steps that are waited for
         session->launch(job);
         std::vector<Hit> hits(std::size_t{job.width} * job.height);
@@ -148,7 +148,7 @@ TEST_P(DeviceSessions, are_not_harmed_by_a_launch_that_nobody_waits_for)
     const DeviceRays rays(make_cubes(3), Layout::tet80);
     const TraceJob job = rays.from_outside(20, 20);
     for (const std::size_t device : usable) {
-        const auto session = backend.open(device, {}, rays.data(), {});
+        const auto session = open(device, {}, rays.data());
         session->launch(rays.from_outside(90, 90));
         EXPECT_EQ(wrong_rays(device, traced(*session, job), openmp_hits(rays, job)), 0u);
         session->launch(rays.from_outside(90, 90));
@@ -159,8 +159,8 @@ TEST_P(DeviceSessions, hold_sessions_side_by_side)
 {
     const DeviceRays a(make_cubes(3), Layout::tet80), b(make_cubes(5), Layout::tet96);
     for (const std::size_t device : usable) {
-        const auto first = backend.open(device, {.layout = Layout::tet80}, a.data(), {});
-        const auto second = backend.open(device, {.layout = Layout::tet96}, b.data(), {});
+        const auto first = open(device, {.layout = Layout::tet80}, a.data());
+        const auto second = open(device, {.layout = Layout::tet96}, b.data());
         const TraceJob job_a = a.from_outside(30, 30), job_b = b.from_inside(40, 40);
         first->launch(job_a);
         second->launch(job_b);
@@ -178,7 +178,7 @@ TEST_P(DeviceSessions, tell_what_a_session_took_and_holds)
 {
     const DeviceRays rays(make_cubes(4), Layout::tet80);
     for (const std::size_t device : usable) {
-        const auto session = backend.open(device, {}, rays.data(), {});
+        const auto session = open(device, {}, rays.data());
         EXPECT_EQ(session->bytes(), rays.packed().bytes());
         EXPECT_GT(session->setup_times().compile_s, 0);
         EXPECT_GT(session->setup_times().upload_s, 0);
@@ -194,7 +194,7 @@ TEST_P(DeviceSessions, tell_the_seconds_of_all_launches)
         const double wanted_share = has_latency ? 0 : 0.25; // the last of the three steps has a tenth of the tiles
         double max_share = 0;
         for (int i = 0; i < max_images && max_share <= wanted_share; ++i) {
-            const auto session = backend.open(device, {}, rays.data(), {}); // its first image is launched in steps
+            const auto session = open(device, {}, rays.data()); // its first image is launched in steps
             const Stopwatch watch;
             session->launch(rays.from_outside(300, 300));
             const double seconds = session->wait();
@@ -210,7 +210,7 @@ TEST_P(DeviceSessions, time_an_image_in_one_launch_too)
 {
     const DeviceRays rays(make_cubes(4), Layout::tet80);
     for (const std::size_t device : usable) {
-        const auto session = backend.open(device, {}, rays.data(), {});
+        const auto session = open(device, {}, rays.data());
         for (const std::uint32_t size : {200u, 8u}) { // in steps that are waited for; one tile, in one launch
             session->launch(rays.from_outside(size, size));
             const double seconds = session->wait();

@@ -2,11 +2,13 @@
 
 #include "backends/cuda/driver_backend.h"
 #include "core/device/self_test.h"
+#include "scenes/cache.h"
 #include "tests/support/device_rays.h"
 
 #include <algorithm>
 #include <cstdlib>
 #include <map>
+#include <memory>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -68,6 +70,13 @@ class EachDevice : public UsableDevices, public ::testing::WithParamInterface<Ap
 protected:
     EachDevice() : UsableDevices(backend_of(GetParam())) {}
 
+    /// With compiled kernels kept for other cases and suites: NVRTC takes seconds for each.
+    [[nodiscard]] std::unique_ptr<Session> open(std::size_t device, const KernelId& kernel, const SceneData& data,
+                                                SessionOptions options = {})
+    {
+        options.program_cache = cache_directory() / "programs";
+        return backend.open(device, kernel, data, options);
+    }
     [[nodiscard]] SelfTest self_test(std::size_t device) const
     {
         return judge_self_test(backend.probe(device, MathMode::exact, self_test_operations()));
