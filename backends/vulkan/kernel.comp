@@ -1,4 +1,5 @@
 #version 450
+#extension GL_EXT_control_flow_attributes : require // dont_unroll
 // A kernel as a compute shader (CMakeLists.txt): a thin entry around the shared text. A work group is a tile. TRACE,
 // RAYS, SEARCH, SEGMENTS, TALLY or ABSORB: the task. With TRACE or RAYS, DEFERS_RAYS: rays at ties are deferred to the program
 // with TRACES_DEFERRED, which traces only those.

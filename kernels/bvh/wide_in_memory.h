@@ -2,8 +2,15 @@
 // an array indexed by one stays in memory, so that a GPU that needs this for few rays keeps its registers for all
 // (results/registers.md). They are statements, since a function of this language copies the arrays that it gets.
 #define WIDE_WORDS 11u
-#define SLOT(number) ((number##u) * WIDE_WORDS)
-#define WIDE_SLOTS uint wide[SLOT(7)];
+#define SLOT_0 0u // glslang cannot make these of a number: it does not paste a suffix
+#define SLOT_1 11u
+#define SLOT_2 22u
+#define SLOT_3 33u
+#define SLOT_4 44u
+#define SLOT_5 55u
+#define SLOT_6 66u
+#define SLOT(number) SLOT_##number
+#define WIDE_SLOTS uint wide[77u];
 
 #define COPY_WIDE(to, from)                                                                                            \
     KEEP_LOOP                                                                                                          \

@@ -10,8 +10,14 @@
 #define KERNEL_FN
 #define RARE_FN
 #define MAYBE_UNUSED
-#define KEEP_LOOP
+#ifdef SCENE_IN_TEXELS    // emulated devices, of which some end an invocation's loops after 65,535 iterations
 #define WIDE_IN_REGISTERS // kernels/bvh/wide_in_registers.h
+#endif
+#ifdef WIDE_IN_REGISTERS
+#define KEEP_LOOP
+#else
+#define KEEP_LOOP [[dont_unroll]]
+#endif
 #define STRUCT(name) struct name
 #define VEC3(x, y, z) Vec3(x, y, z)
 // An item's words are GROUP_ITEMS apart, so that its neighbours' are in other banks. An array has one word at least.
