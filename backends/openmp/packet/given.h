@@ -290,12 +290,10 @@ template <Goal goal>
 [[gnu::noinline]] void take_rays(const PacketJob& job, Queue& queue, Met& met, Packet& packet, GivenWalk<goal>& walk,
                                  uint steps)
 {
-    const Words most = all(job.max_steps);
-    const auto are_too_many = [&](Words a) { return lanes_of(equal(least(a, most), most)); };
-    const uint lost = walk.live & are_too_many(packet.steps + all(steps));
+    const uint lost = walk.live & lanes_of(have_left(packet.steps + all(steps), job.max_steps));
     walk.live &= ~lost;
     const uint ended = packet.lanes & ~walk.live;
-    packet.deferred |= lost | (ended & are_too_many(packet.steps));
+    packet.deferred |= lost | (ended & lanes_of(have_left(packet.steps, job.max_steps)));
     if constexpr (goal == Goal::boundary)
         write_answers(job, packet, walk, ended);
     else

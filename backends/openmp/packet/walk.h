@@ -118,6 +118,11 @@ LANE_FN void go_on(WalkState& state, Mask lanes, Words exits)
     store(state.offsets, state.record * (4 * HALF32_QUADS));
 }
 
+LANE_FN Mask have_left(Words tets, uint count)
+{
+    return equal(least(tets, all(count)), all(count));
+}
+
 // A step of all live lanes. steps: its number in the packet. GivenWalk of given.h says what the goals do.
 template <Goal goal, class AnyWalk>
 LANE_FN void step(const PacketJob& job, Packet& packet, AnyWalk& walk, uint steps)
@@ -135,7 +140,9 @@ LANE_FN void step(const PacketJob& job, Packet& packet, AnyWalk& walk, uint step
         replace(replaced[i], apex.y, walk.carried[i].y);
     }
     Words exit = exits_of(walk, replaced, at.exits.of);
-    const Mask live = mask_of(walk.live), ties = live & (s0.tie | s1.tie | s2.tie), decided = without(live, ties);
+    Mask undecided = s0.tie | s1.tie | s2.tie;
+    if constexpr (goal == Goal::boundary) undecided = undecided | have_left(packet.steps + all(steps - 1u), job.max_steps);
+    const Mask live = mask_of(walk.live), ties = live & undecided, decided = without(live, ties);
     Mask is_end = equal(exit & all(3u), all(EXIT_END));
     if constexpr (goal != Goal::triangle) {
         const Floats depth = depth_for(packet, walk, at.apex.of);
