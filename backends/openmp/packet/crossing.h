@@ -81,6 +81,14 @@ LANE_FN void add_lengths(const PacketJob& job, CrossingWalk& walk, Words tets, W
     }
 }
 
+// Prefetches the sums to which lanes add next.
+LANE_FN void prefetch_sums(const PacketJob& job, const CrossingWalk& walk)
+{
+    if (job.sums == nullptr) return;
+    for (const uint offset : walk.offsets.of)
+        __builtin_prefetch(job.sums + 2 * std::size_t{offset / (4 * 4 * HALF32_QUADS)}, 1);
+}
+
 // absorbed_in() and transmittance_of() of absorption.h.
 LANE_FN void absorb(CrossingWalk& walk, Words tets, Words lengths, Mask mask)
 {

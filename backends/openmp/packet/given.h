@@ -348,6 +348,7 @@ template <Goal goal>
             if (walks[i].live != 0) {
                 step<goal>(job, packets[i], walks[i], steps + 1);
                 prefetch_quads(job.records, walks[i].offsets);
+                if constexpr (goal == Goal::boundary) prefetch_sums(job, walks[i]);
             }
             goes_on = goes_on || packets[i].lanes != 0;
         }
