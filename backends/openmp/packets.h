@@ -4,13 +4,14 @@
 
 namespace tetrace::openmp {
 
-/// What given rays walk to: their first triangle, or that or their end, or the domain's boundary, through all triangles.
+/// What given rays walk to: their first triangle, or that or their end, or the domain's boundary, through all
+/// triangles.
 enum class Goal { triangle, end, boundary };
 
 /// The arguments of a packet kernel (packet/block.cpp): only pointers and numbers. The kernel is compiled for
 /// processors with more instructions than the rest of the program needs, so the two may share no inline function.
 struct PacketJob {
-    const std::uint32_t* records;   ///< PackedScene::tets of layout half32; if rays cross tets, without ends at triangles
+    const std::uint32_t* records; ///< PackedScene::tets of layout half32; if rays cross tets, without ends at triangles
     const std::uint32_t* triangles; ///< and the other arrays of that scene
     const float* lines;
     const std::uint32_t* entry_ranges;

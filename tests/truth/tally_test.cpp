@@ -65,7 +65,8 @@ TEST(Tally, of_hard_rays_is_that_of_their_walks_for_any_number_of_threads)
                 const auto session = tets.session(threads);
                 const std::vector<Hit> answers = tets.answers(*session, set);
                 const Sums tally = session->tally();
-                EXPECT_EQ(tally, expected) << name << ' ' << name_of(kernel) << ' ' << name_of(kernel.schedule) << ", " << threads << " threads";
+                EXPECT_EQ(tally, expected) << name << ' ' << name_of(kernel) << ' ' << name_of(kernel.schedule) << ", "
+                                           << threads << " threads";
                 EXPECT_FALSE(has_wrong_total(tally, answers)) << name << ' ' << name_of(kernel);
             }
         }

@@ -1,7 +1,7 @@
 #pragma once
 
-// Given rays that cross all tets to the domain's boundary: what kernels/walks/segments.h and absorption.h keep of a walk,
-// lane by lane. The records' exits at triangles lead on (packet_session.cpp). Include after places.h.
+// Given rays that cross all tets to the domain's boundary: what kernels/walks/segments.h and absorption.h keep of a
+// walk, lane by lane. The records' exits at triangles lead on (packet_session.cpp). Include after places.h.
 
 struct CrossingWalk : Walk<any_axis> {
     Mask is_y, is_z; // each ray's deepest axis

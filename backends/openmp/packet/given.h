@@ -1,18 +1,22 @@
 // Given rays, which do not stay together: a lane whose ray has ended takes a waiting ray. The entry into the domain is
 // found before, and the hit on the triangle after, in packets all of whose lanes have such a ray.
-constexpr uint given_in_turns = 8;       // with more, what they prefetch exceeds what a processor can wait for
-constexpr uint lanes_wanted = LANES / 4; // a packet takes new rays when it has fewer live lanes
-constexpr uint rays_at_once = 512;       // that a thread takes at a time
-constexpr uint rays_ahead = 32;          // whose tets are prefetched before the rays are taken
+constexpr uint given_in_turns = 8; // with more, what they prefetch exceeds what a processor can wait for
+// A packet takes new rays when it has fewer live lanes. A step that crosses tets costs several times as much.
+template <Goal goal>
+constexpr uint lanes_wanted = goal == Goal::boundary ? 3 * LANES / 4 : LANES / 4;
+constexpr uint rays_at_once = 512; // that a thread takes at a time
+constexpr uint rays_ahead = 32;    // whose tets are prefetched before the rays are taken
 
 constexpr uint record_words = 4 * HALF32_QUADS, tet_words = 4 * record_words;
 
 constexpr uint deferred_half_face = NO_HALF_FACE - 1; // of no face
 
 template <Goal goal>
-struct GivenWalk : Walk<any_axis> {};
+struct GivenWalk : Walk<any_axis> {
+};
 template <>
-struct GivenWalk<Goal::boundary> : CrossingWalk {};
+struct GivenWalk<Goal::boundary> : CrossingWalk {
+};
 
 // What rays with an end carry of a vertex besides where they see it; crossing.h has that of rays that cross tets.
 LANE_FN Floats depth_for(const Packet& packet, const GivenWalk<Goal::end>&, const Words* place)
@@ -339,7 +343,7 @@ template <Goal goal>
         goes_on = may_have_rays(job, queue); // even if all lanes have just run out of steps
         for (uint i = 0; i < given_in_turns; ++i) {
             const auto live = static_cast<uint>(__builtin_popcount(walks[i].live));
-            const bool takes = live < lanes_wanted && has_rays(job, queue);
+            const bool takes = live < lanes_wanted<goal> && has_rays(job, queue);
             const bool has_ended = live == 0 && packets[i].lanes != 0;
             if (takes || has_ended || steps - checked[i] >= job.max_steps) {
                 take_rays(job, queue, met, packets[i], walks[i], steps);

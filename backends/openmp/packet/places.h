@@ -1,7 +1,8 @@
 #pragma once
 
-// Where lanes meet the faces that they leave by: kernels/walks/places.h, lane by lane, in its order of operations. Walks
-// see vertices by shear_of(), whose y has another sign in some lanes; no place depends on that. Include after walk.h.
+// Where lanes meet the faces that they leave by: kernels/walks/places.h, lane by lane, in its order of operations.
+// Walks see vertices by shear_of(), whose y has another sign in some lanes; no place depends on that. Include after
+// walk.h.
 
 // The numbers of a face's three corners.
 struct Corners {
@@ -88,8 +89,8 @@ LANE_FN Corners weights_outside(const Seen* p, const Mask* is_inside)
         first[i] = weight_on_edge(p[i], p[next]);
         second[i] = weight_on_edge(p[next], p[i]);
         const Mask rises = (is_inside[i] & greater(second[i], zero)) | without(greater(first[i], zero), is_inside[i]);
-        is_on[i] = without((is_inside[i] & is_inside[next]) | ((is_inside[i] | is_inside[next]) & rises),
-                           is_inside[other]);
+        is_on[i] =
+            without((is_inside[i] & is_inside[next]) | ((is_inside[i] | is_inside[next]) & rises), is_inside[other]);
     }
     const Mask is_on_any = is_on[0] | is_on[1] | is_on[2];
     Corners weights;
@@ -111,12 +112,12 @@ LANE_FN Corners weights_outside(const Seen* p, const Mask* is_inside)
     for (uint i = 0; i < 3; ++i) {
         h.of[i] = select(extent.is_high, p[i].y, p[i].x);
         const Mask is_positive = greater(area, zero);
-        is_inside[i] = without(is_positive, greater(zero, areas.of[i])) | neither(is_positive, greater(areas.of[i], zero));
+        is_inside[i] =
+            without(is_positive, greater(zero, areas.of[i])) | neither(is_positive, greater(areas.of[i], zero));
     }
     const Corners sides = magnitudes_of(areas);
     const Mask has_area = without(greater(sum_of(sides), extent.least_sum), equal(area, zero));
-    const Corners passed =
-        select(is_inside[0] & is_inside[1] & is_inside[2], sides, weights_outside(p, is_inside));
+    const Corners passed = select(is_inside[0] & is_inside[1] & is_inside[2], sides, weights_outside(p, is_inside));
     return select(has_area, passed, weights_edge_on(h));
 }
 

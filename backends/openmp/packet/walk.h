@@ -17,8 +17,8 @@ template <int z>
 struct Walk : WalkState {
     Shear<z> shear;
     Seen carried[3];
-    // Of the carried vertices, and of the rays' ends. Of rays that cross tets, the vertices' coordinates (crossing.h). Not
-    // used for others without an end.
+    // Of the carried vertices, and of the rays' ends. Of rays that cross tets, the vertices' coordinates (crossing.h).
+    // Not used for others without an end.
     Floats depths[3], reach;
 };
 
@@ -141,7 +141,8 @@ LANE_FN void step(const PacketJob& job, Packet& packet, AnyWalk& walk, uint step
     }
     Words exit = exits_of(walk, replaced, at.exits.of);
     Mask undecided = s0.tie | s1.tie | s2.tie;
-    if constexpr (goal == Goal::boundary) undecided = undecided | have_left(packet.steps + all(steps - 1u), job.max_steps);
+    if constexpr (goal == Goal::boundary)
+        undecided = undecided | have_left(packet.steps + all(steps - 1u), job.max_steps);
     const Mask live = mask_of(walk.live), ties = live & undecided, decided = without(live, ties);
     Mask is_end = equal(exit & all(3u), all(EXIT_END));
     if constexpr (goal != Goal::triangle) {

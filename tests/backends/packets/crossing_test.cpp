@@ -49,7 +49,8 @@ private:
     {
         KernelId kernel = tets_.kernel();
         kernel.schedule = schedule;
-        return openmp_backend().open(0, kernel, {&scene_.mesh, &tets_.packed()}, {.threads = 2, .packet_lanes = lanes_});
+        return openmp_backend().open(0, kernel, {&scene_.mesh, &tets_.packed()},
+                                     {.threads = 2, .packet_lanes = lanes_});
     }
     [[nodiscard]] std::vector<Hit> crossed(Session& session, const RaySet& set, std::uint32_t max_steps) const
     {
