@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstdlib>
 #include <fmt/format.h>
 
 using namespace tetrace;
@@ -20,6 +21,14 @@ using namespace tetrace::test;
 namespace {
 
 constexpr std::array tasks{Task::segments, Task::tally, Task::absorb};
+constexpr std::size_t crossed_at_once = 9 * 2048;
+
+/// TETRACE_HARD_RAYS is how many rays per scene, rounded up.
+std::uint64_t crossed_rays()
+{
+    const char* const text = std::getenv("TETRACE_HARD_RAYS");
+    return text == nullptr ? crossed_at_once : std::strtoull(text, nullptr, 10);
+}
 
 /// A half32 scene, crossed by packets of one width and by single rays.
 class Crossed {
@@ -112,8 +121,11 @@ TETRACE_EACH_PACKET_WIDTH(CrossingPackets);
 TEST_P(CrossingPackets, have_the_scalar_kernels_bits_through_vertices_along_edges_and_in_faces)
 {
     for (const auto& [name, scene] : make_hard_scenes())
-        for (const Task task : tasks)
-            Crossed(scene, task, GetParam()).expect_scalar_bits(hard_ray_set(scene, 0, 9 * 2048), name);
+        for (const Task task : tasks) {
+            const Crossed crossed(scene, task, GetParam());
+            for (std::uint64_t first = 0; first < crossed_rays(); first += crossed_at_once)
+                crossed.expect_scalar_bits(hard_ray_set(scene, first, crossed_at_once), name);
+        }
 }
 
 TEST_P(CrossingPackets, of_every_kind_of_rays_have_the_scalar_kernels_bits)
