@@ -6,6 +6,7 @@
 #include <sys/mman.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cassert>
 #include <cfenv>
@@ -79,7 +80,24 @@ void HitTile::store(std::uint32_t x, std::uint32_t y) const
 
 namespace {
 
+// Where a tally's lengths are added; the first `skipped` that are not 0 have been added before.
+struct Sums {
+    std::uint32_t* words = nullptr;
+    std::uint32_t* skipped = nullptr;
+};
+
+std::uint32_t add_to_sum(Sums sums, std::uint32_t word, std::uint32_t added)
+{
+    if (*sums.skipped == 0) return std::atomic_ref(sums.words[word]).fetch_add(added, std::memory_order_relaxed);
+    --*sums.skipped;
+    return 0; // so that no carry follows
+}
+
 namespace scalar {
+#define LENGTH_SUMS Sums
+#define NO_SUMS (Sums{})
+#define HAS_SUMS(sums) ((sums).words != nullptr)
+#define ADD_TO_SUM(sums, word, added) add_to_sum(sums, word, added)
 #define KERNEL_STRUCTURE_HEADER "kernels/walks/structure_cdt.h"
 #define KERNEL_ARRAYS_HEADER "kernels/layouts/cdt_arrays.h"
 #define KERNEL_METHOD_HEADER "kernels/methods/project.h"
@@ -126,6 +144,14 @@ void trace_given(const PacketJob& job, std::uint32_t number)
     write_hit(job, number, scalar::trace_given(rays.scene, rays.params, rays.direction(number), rays.origin(number)));
 }
 
+void cross_given(const PacketJob& job, std::uint32_t number, std::uint32_t added)
+{
+    const Rays& rays = rays_of(job);
+    const auto answer = scalar::cross_tets(rays.scene, rays.params, Sums{job.sums, &added}, job.absorbs,
+                                           rays.direction(number), rays.origin(number));
+    write_hit(job, number, std::bit_cast<scalar::Hit>(answer));
+}
+
 std::vector<PacketKernel> kernels_of_host()
 {
     std::vector<PacketKernel> kernels;
@@ -168,6 +194,39 @@ std::uint32_t* copy_of(const std::vector<Quad>& quads)
     return static_cast<std::uint32_t*>(block);
 }
 
+std::uint32_t exit_of(const Quad& exits, std::uint32_t index)
+{
+    return index == 0 ? exits.x : index == 1 ? exits.y : exits.z;
+}
+
+// The exit of a record through the face opposite its corner `index`, as pack_half32() has it for a free face.
+std::uint32_t exit_through_face(std::span<const Quad> quads, std::uint32_t record, std::uint32_t index)
+{
+    const auto apex = [&](std::uint32_t of) {
+        const Quad& quad = quads[std::size_t{HALF32_QUADS} * of];
+        return std::array{quad.x, quad.y, quad.z};
+    };
+    const std::uint32_t face = scalar::record_of_corner(record, index);
+    const std::uint32_t half_face = quads[std::size_t{HALF32_QUADS} * face + 1].w;
+    if (half_face == NO_HALF_FACE) return NO_HALF_FACE;
+    const auto first = apex(scalar::record_of_corner(half_face, 0));
+    std::uint32_t rotation = 0;
+    while (rotation < 2 && apex(rotation == index ? record : scalar::record_of_corner(record, rotation)) != first)
+        ++rotation;
+    return half_face << 2 | rotation;
+}
+
+// Lets triangles' faces lead on to the next tet, as free ones do, for rays that cross tets.
+void open_triangles(std::span<Quad> quads)
+{
+    for (std::uint32_t record = 0; record < quads.size() / HALF32_QUADS; ++record) {
+        Quad& exits = quads[std::size_t{HALF32_QUADS} * record + 1];
+        for (std::uint32_t index = 0; index < 3; ++index)
+            if ((exit_of(exits, index) & 3u) == EXIT_END)
+                (index == 0 ? exits.x : index == 1 ? exits.y : exits.z) = exit_through_face(quads, record, index);
+    }
+}
+
 void copy3(Float3 from, float* to)
 {
     to[0] = from.x;
@@ -197,6 +256,7 @@ PacketJob packet_job(const PackedScene& scene, const std::uint32_t* records, con
         result.origins = reinterpret_cast<const std::uint32_t*>(&rays.origin(0));
     }
     result.trace_one = rays.given.empty() ? trace_pixel : trace_given;
+    result.cross_one = cross_given;
     result.context = &rays;
     return result;
 }
@@ -239,7 +299,9 @@ PacketSession::PacketSession(PacketKernel kernel, Task task, const PackedScene& 
     : HostSession(task, threads), kernel_(kernel), task_(task), scene_(scene)
 {
     const Stopwatch watch;
+    make_tally(task, scene.tet_count);
     records_.reset(copy_of(scene.tets));
+    if (traits_of(task).crosses) open_triangles({reinterpret_cast<Quad*>(records_.get()), scene.tets.size()});
     copy_s_ = watch.seconds();
 }
 
@@ -262,14 +324,17 @@ void PacketSession::run(const TraceJob& job, std::span<std::uint32_t> output, Sh
 {
     const Rays rays{scalar::view_of(scene_), scalar::params_of(job), rays_};
     PacketJob packets = packet_job(scene_, records_.get(), job, rays);
-    packets.has_ends = rays_end_;
+    const TaskTraits& traits = traits_of(task_);
+    packets.goal = traits.crosses ? Goal::boundary : rays_end_ ? Goal::end : Goal::triangle;
+    packets.absorbs = traits.absorbs;
+    if (traits.tallies) packets.sums = output.data() + HIT_WORDS * job.rays();
     packets.starts_outside = rays_start_outside_;
     packets.hits = output.data();
     packets.ray_count = job.width * job.height;
     std::fenv_t environment; // as in kernel.cpp
     std::fegetenv(&environment);
     std::fesetenv(FE_DFL_ENV);
-    if (task_ == Task::rays)
+    if (traits.takes_rays)
         tiles.share([&](std::uint32_t* next_ray) {
             packets.next_ray = next_ray;
             kernel_.rays(packets);

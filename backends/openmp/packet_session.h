@@ -48,8 +48,8 @@ struct PacketKernel {
 /// widths there are.
 [[nodiscard]] PacketKernel packet_kernel(unsigned lanes);
 
-/// Schedule packets: traces packets of primary or given rays through layout half32. Hits are the same bits as with
-/// schedule tiles.
+/// Schedule packets: traces packets of primary or given rays through layout half32, or lets given rays cross its tets.
+/// Answers and sums are the same bits as with schedule tiles.
 class PacketSession : public HostSession {
 public:
     PacketSession(PacketKernel kernel, Task task, const PackedScene& scene, unsigned threads);

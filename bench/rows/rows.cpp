@@ -253,8 +253,8 @@ void require_named_devices(const Options& options, const std::vector<Backend*>& 
 
 constexpr const char* crossing_rule = "; rows of --task segments, tally and absorb are of maria and project on tets "
                                       "that name their corners, of segments also of plane and "
-                                      "plucker on tet80, with schedule tiles, math mode exact, and rays of kinds "
-                                      "primary, diffuse and random";
+                                      "plucker on tet80, with schedule tiles (project on half32 also packets), "
+                                      "math mode exact, and rays of kinds primary, diffuse and random";
 
 /// The reasons of the backends asked for, to explain an empty selection.
 std::string reasons(const Options& options)

@@ -63,11 +63,12 @@ std::vector<VolumeScene> volume_scenes(const Options& options, std::vector<std::
 }
 
 /// What is not named: the methods that walk through all tets, each on the layouts that are made for it, on openmp with
-/// one thread and with all.
+/// one thread and with all, also in packets.
 Options volume_options(Options options)
 {
     if (options.methods.empty()) options.methods = {Method::plane, Method::plucker, Method::maria, Method::project};
     if (options.layouts.empty()) options.layouts = {Layout::tet80, Layout::half32, Layout::tet64};
+    if (options.schedules.empty()) options.schedules = {Schedule::tiles, Schedule::packets};
     const unsigned threads = resolved_threads(options);
     if (options.thread_counts.empty() && threads > 1) options.thread_counts = {1, threads};
     options.exact_samples = true;

@@ -301,12 +301,16 @@ TEST(ProjectCycles, leave_nothing_in_the_sums_of_a_tally)
     for (Backend* backend : all_backends())
         for (std::size_t device = 0; device < backend->devices().size(); ++device) {
             if (!is_usable(*backend, device)) continue;
-            const auto session =
-                backend->open(device, tets.kernel(), {&grid.scene.mesh, &tets.packed()}, {.threads = 2});
-            session->set_rays(quads);
-            std::vector<Hit> answers(set.rays.size());
-            static_cast<void>(session->trace(given_job(set.rays.size(), many_steps, false), answers));
-            EXPECT_FALSE(any_is_lost(answers)) << backend->name();
-            EXPECT_EQ(session->tally(), expected) << backend->name();
+            for (const Schedule schedule : {Schedule::tiles, Schedule::packets}) {
+                KernelId kernel = tets.kernel();
+                kernel.schedule = schedule;
+                if (!backend->has_kernel(kernel)) continue;
+                const auto session = backend->open(device, kernel, {&grid.scene.mesh, &tets.packed()}, {.threads = 2});
+                session->set_rays(quads);
+                std::vector<Hit> answers(set.rays.size());
+                static_cast<void>(session->trace(given_job(set.rays.size(), many_steps, false), answers));
+                EXPECT_FALSE(any_is_lost(answers)) << backend->name() << ' ' << name_of(schedule);
+                EXPECT_EQ(session->tally(), expected) << backend->name() << ' ' << name_of(schedule);
+            }
         }
 }

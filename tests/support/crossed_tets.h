@@ -16,9 +16,13 @@ namespace tetrace::test {
 /// A scene packed for a kernel of a task that crosses tets, and what openmp answers and notes there.
 class CrossedScene {
 public:
+    CrossedScene(const Scene& scene, const KernelId& kernel)
+        : scene_(scene), kernel_(kernel), packed_(pack(scene, kernel.layout, TetOrder::chains)),
+          mesh_of_packed_(inverse_of(packed_.packed_of_mesh))
+    {
+    }
     CrossedScene(const Scene& scene, Method method, Layout layout, Task task = Task::segments)
-        : scene_(scene), kernel_{.method = method, .layout = layout, .task = task},
-          packed_(pack(scene, layout, TetOrder::chains)), mesh_of_packed_(inverse_of(packed_.packed_of_mesh))
+        : CrossedScene(scene, {.method = method, .layout = layout, .task = task})
     {
     }
 

@@ -89,7 +89,7 @@ TEST(Absorption, of_hard_rays_is_right_for_each_kernel_and_the_same_on_all_layou
     for (const auto& [name, scene] : make_hard_scenes()) {
         std::map<Method, std::vector<Hit>> of_method;
         for (const KernelId& kernel : kernels_of(Task::absorb)) {
-            const CrossedScene tets(scene, kernel.method, kernel.layout, Task::absorb);
+            const CrossedScene tets(scene, kernel);
             const RaySet set = rays_for(kernel.method, scene, 3600);
             const std::vector<Hit> answers = tets.answers(set);
             const Verdicts verdicts = tets.judged(set, answers, tets.walks(set));
@@ -110,7 +110,7 @@ TEST(Absorption, of_exact_rays_is_the_same_within_its_bound)
 {
     const Scene scene = make_cubes(3);
     for (const KernelId& kernel : kernels_of(Task::absorb)) {
-        const CrossedScene tets(scene, kernel.method, kernel.layout, Task::absorb);
+        const CrossedScene tets(scene, kernel);
         const RaySet set = rays_for(Method::maria, scene, 3600);
         std::size_t sharp = 0, ended = 0;
         for (std::size_t i = 0; const Hit& hit : tets.answers(set)) {

@@ -58,14 +58,15 @@ TEST(Tally, of_hard_rays_is_that_of_their_walks_for_any_number_of_threads)
 {
     for (const auto& [name, scene] : make_hard_scenes())
         for (const KernelId& kernel : kernels_of(Task::tally)) {
-            const CrossedScene tets(scene, kernel.method, kernel.layout, Task::tally);
+            const CrossedScene tets(scene, kernel);
             const RaySet set = hard_ray_set(scene, 0, 3600);
             const Sums expected = sums_of_walks(tets, set);
             for (const unsigned threads : {1u, 2u, 7u}) {
                 const auto session = tets.session(threads);
                 const std::vector<Hit> answers = tets.answers(*session, set);
                 const Sums tally = session->tally();
-                EXPECT_EQ(tally, expected) << name << ' ' << name_of(kernel) << ", " << threads << " threads";
+                EXPECT_EQ(tally, expected) << name << ' ' << name_of(kernel) << ' ' << name_of(kernel.schedule) << ", "
+                                           << threads << " threads";
                 EXPECT_FALSE(has_wrong_total(tally, answers)) << name << ' ' << name_of(kernel);
             }
         }
@@ -75,7 +76,7 @@ TEST(Tally, of_exact_rays_is_the_same_within_its_bound)
 {
     const Scene scene = make_cubes(3);
     for (const KernelId& kernel : kernels_of(Task::tally)) {
-        const CrossedScene tets(scene, kernel.method, kernel.layout, Task::tally);
+        const CrossedScene tets(scene, kernel);
         for (const bool are_hard : {false, true}) {
             if (are_hard && kernel.method != Method::project) continue;
             const RaySet set = are_hard ? hard_ray_set(scene, 0, 3600) : chords(scene, 3600);

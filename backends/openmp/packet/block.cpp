@@ -13,6 +13,7 @@
 
 namespace {
 
+using tetrace::openmp::Goal;
 using tetrace::openmp::PacketJob;
 
 #include "backends/openmp/packet/lanes.h"
@@ -22,6 +23,10 @@ using tetrace::openmp::PacketJob;
 #include "backends/openmp/packet/walk.h"
 
 #include "backends/openmp/packet/beams.h"
+
+#include "backends/openmp/packet/places.h"
+
+#include "backends/openmp/packet/crossing.h"
 
 #include "backends/openmp/packet/given.h"
 
@@ -149,10 +154,11 @@ void collect(const PacketJob& job, uint x, uint y, Packets& block)
 
 extern "C" void tetrace::openmp::ENTRY_POINT(tetrace_trace_rays_, LANES)(const PacketJob& job)
 {
-    if (job.has_ends)
-        trace_rays<true>(job);
-    else
-        trace_rays<false>(job);
+    switch (job.goal) {
+    case Goal::triangle: trace_rays<Goal::triangle>(job); break;
+    case Goal::end: trace_rays<Goal::end>(job); break;
+    case Goal::boundary: trace_rays<Goal::boundary>(job); break;
+    }
 }
 
 extern "C" void tetrace::openmp::ENTRY_POINT(tetrace_trace_block_, LANES)(const PacketJob& job)

@@ -1,15 +1,28 @@
 // Given rays, which do not stay together: a lane whose ray has ended takes a waiting ray. The entry into the domain is
 // found before, and the hit on the triangle after, in packets all of whose lanes have such a ray.
-constexpr uint given_in_turns = 8;       // with more, what they prefetch exceeds what a processor can wait for
-constexpr uint lanes_wanted = LANES / 4; // a packet takes new rays when it has fewer live lanes
-constexpr uint rays_at_once = 512;       // that a thread takes at a time
-constexpr uint rays_ahead = 32;          // whose tets are prefetched before the rays are taken
+constexpr uint given_in_turns = 8; // with more, what they prefetch exceeds what a processor can wait for
+// A packet takes new rays when it has fewer live lanes. A step that crosses tets costs several times as much.
+template <Goal goal>
+constexpr uint lanes_wanted = goal == Goal::boundary ? 3 * LANES / 4 : LANES / 4;
+constexpr uint rays_at_once = 512; // that a thread takes at a time
+constexpr uint rays_ahead = 32;    // whose tets are prefetched before the rays are taken
 
 constexpr uint record_words = 4 * HALF32_QUADS, tet_words = 4 * record_words;
 
 constexpr uint deferred_half_face = NO_HALF_FACE - 1; // of no face
 
-using GivenWalk = Walk<any_axis>;
+template <Goal goal>
+struct GivenWalk : Walk<any_axis> {
+};
+template <>
+struct GivenWalk<Goal::boundary> : CrossingWalk {
+};
+
+// What rays with an end carry of a vertex besides where they see it; crossing.h has that of rays that cross tets.
+LANE_FN Floats depth_for(const Packet& packet, const GivenWalk<Goal::end>&, const Words* place)
+{
+    return depth_at(packet, place);
+}
 
 // Numbers of the rays that this thread has taken, of which those from `next` on wait. entered: by ray from `first` on,
 // the half-faces by which those from outside enter the domain, NO_HALF_FACE if they miss it, deferred_half_face for the
@@ -143,8 +156,9 @@ LANE_FN T carried_across(const Mask* by_face, const T* of, uint i)
 }
 
 // Lets lanes leave the tets in which their rays start, as exit_from_face() of path.h. steps: of the packet.
-template <bool has_ends>
-LANE_FN void leave_tets(const PacketJob& job, Packet& packet, GivenWalk& walk, uint lanes, Words half_faces, uint steps)
+template <Goal goal>
+LANE_FN void leave_tets(const PacketJob& job, Packet& packet, GivenWalk<goal>& walk, uint lanes, Words half_faces,
+                        uint steps)
 {
     const Mask mask = mask_of(lanes);
     LaneWords offsets;
@@ -169,14 +183,21 @@ LANE_FN void leave_tets(const PacketJob& job, Packet& packet, GivenWalk& walk, u
     Mask is_end = equal(exit & 3u, all(EXIT_END));
     for (uint i = 0; i < 3; ++i)
         walk.carried[i] = select(mask, carried_across(by_face, v, i), walk.carried[i]);
-    if constexpr (has_ends) {
+    if constexpr (goal != Goal::triangle) {
         Floats depths[4];
         for (uint i = 0; i < 4; ++i)
-            depths[i] = depth_at(packet, apexes[i].of);
+            depths[i] = depth_for(packet, walk, apexes[i].of);
         for (uint i = 0; i < 3; ++i)
             walk.depths[i] = select(mask, carried_across(by_face, depths, i), walk.depths[i]);
+    }
+    if constexpr (goal == Goal::end) {
         walk.reach = depth_of_end(packet);
         is_end = end_across(walk, is_end, exit);
+    }
+    if constexpr (goal == Goal::boundary) {
+        begin_crossing(walk, mask_of(leaving), half_faces, place_of_origin(packet, walk));
+        walk.record = select(mask_of(leaving), half_faces, walk.record);
+        is_end = is_end | cross(job, packet, walk, mask_of(leaving));
     }
     const uint ended = leaving & lanes_of(is_end);
     packet.steps = select(mask, all(1u - steps), packet.steps);
@@ -188,8 +209,8 @@ LANE_FN void leave_tets(const PacketJob& job, Packet& packet, GivenWalk& walk, u
 }
 
 // Lets lanes enter the domain where enter_domain() has found that they do.
-template <bool has_ends>
-LANE_FN void enter_records(const PacketJob& job, const Queue& queue, Packet& packet, GivenWalk& walk, uint lanes,
+template <Goal goal>
+LANE_FN void enter_records(const PacketJob& job, const Queue& queue, Packet& packet, GivenWalk<goal>& walk, uint lanes,
                            uint steps)
 {
     LaneWords half_face_of{};
@@ -206,9 +227,11 @@ LANE_FN void enter_records(const PacketJob& job, const Queue& queue, Packet& pac
     for (uint i = 0; i < 3; ++i) {
         const Quad corner = corners_of(job, half_faces, i);
         walk.carried[i] = select(mask, seen_at(packet, walk.shear, corner.of), walk.carried[i]);
-        if constexpr (has_ends) walk.depths[i] = select(mask, depth_at(packet, corner.of), walk.depths[i]);
+        if constexpr (goal != Goal::triangle)
+            walk.depths[i] = select(mask, depth_for(packet, walk, corner.of), walk.depths[i]);
     }
-    if constexpr (has_ends) walk.reach = depth_of_end(packet);
+    if constexpr (goal == Goal::end) walk.reach = depth_of_end(packet);
+    if constexpr (goal == Goal::boundary) begin_crossing(walk, mask, half_faces, places_of(packet, walk, mask));
     packet.steps = select(mask, all(0u - steps), packet.steps);
     walk.live |= entering;
     walk.rotation = select(mask, Words{}, walk.rotation);
@@ -256,22 +279,29 @@ LANE_FN void push(const PacketJob& job, Met& met, const Packet& packet, uint lan
     met.first += static_cast<uint>(__builtin_popcount(lanes));
 }
 
-// Ends a packet's lanes whose rays have ended, and lets its free lanes take new rays. steps: of the packet so far.
-template <bool has_ends>
-[[gnu::noinline]] void take_rays(const PacketJob& job, Queue& queue, Met& met, Packet& packet, GivenWalk& walk,
-                                 uint steps)
+// Writes the hits of lanes that have met no triangle; the others wait.
+LANE_FN void write_ended(const PacketJob& job, Met& met, Packet& packet, uint ended)
 {
-    const Words most = all(job.max_steps);
-    const auto are_too_many = [&](Words a) { return lanes_of(equal(least(a, most), most)); };
-    const uint lost = walk.live & are_too_many(packet.steps + all(steps));
-    walk.live &= ~lost;
-    const uint ended = packet.lanes & ~walk.live;
-    packet.deferred |= lost | (ended & are_too_many(packet.steps));
     const uint hitting = lanes_hitting(packet, ended);
     if (ended != hitting) write_hits(job, packet, ended & ~hitting);
     push(job, met, packet, hitting);
     while (met.end - met.first >= 2 * LANES)
         write_first(job, met);
+}
+
+// Ends a packet's lanes whose rays have ended, and lets its free lanes take new rays. steps: of the packet so far.
+template <Goal goal>
+[[gnu::noinline]] void take_rays(const PacketJob& job, Queue& queue, Met& met, Packet& packet, GivenWalk<goal>& walk,
+                                 uint steps)
+{
+    const uint lost = walk.live & lanes_of(have_left(packet.steps + all(steps), job.max_steps));
+    walk.live &= ~lost;
+    const uint ended = packet.lanes & ~walk.live;
+    packet.deferred |= lost | (ended & lanes_of(have_left(packet.steps, job.max_steps)));
+    if constexpr (goal == Goal::boundary)
+        write_answers(job, packet, walk, ended);
+    else
+        write_ended(job, met, packet, ended);
     packet.lanes = walk.live;
     packet.deferred = 0;
     uint taken = 0;
@@ -288,12 +318,13 @@ template <bool has_ends>
     packet.exit = select(mask, all(NO_HALF_FACE), packet.exit);
     packet.record = select(mask, all(NO_HALF_FACE), packet.record);
     packet.steps = select(mask, Words{}, packet.steps);
+    if constexpr (goal == Goal::boundary) clear_crossing(packet, walk, mask);
     const uint outside = taken & lanes_of(equal(half_faces, all(NO_HALF_FACE))), inside = taken & ~outside;
-    if (outside != 0) enter_records<has_ends>(job, queue, packet, walk, outside, steps);
-    if (inside != 0) leave_tets<has_ends>(job, packet, walk, inside, half_faces, steps);
+    if (outside != 0) enter_records(job, queue, packet, walk, outside, steps);
+    if (inside != 0) leave_tets(job, packet, walk, inside, half_faces, steps);
 }
 
-template <bool has_ends>
+template <Goal goal>
 [[gnu::noinline]] void trace_rays(const PacketJob& job)
 {
     Queue queue;
@@ -301,26 +332,27 @@ template <bool has_ends>
     Met met;
     __builtin_memset(&met, 0, sizeof met);
     Packet packets[given_in_turns];
-    GivenWalk walks[given_in_turns];
+    GivenWalk<goal> walks[given_in_turns];
     uint checked[given_in_turns] = {};
     for (uint i = 0; i < given_in_turns; ++i) {
         __builtin_memset(&packets[i], 0, sizeof(Packet));
-        __builtin_memset(&walks[i], 0, sizeof(GivenWalk));
+        __builtin_memset(&walks[i], 0, sizeof(GivenWalk<goal>));
     }
     bool goes_on = true;
     for (uint steps = 0; goes_on; ++steps) {
         goes_on = may_have_rays(job, queue); // even if all lanes have just run out of steps
         for (uint i = 0; i < given_in_turns; ++i) {
             const auto live = static_cast<uint>(__builtin_popcount(walks[i].live));
-            const bool takes = live < lanes_wanted && has_rays(job, queue);
+            const bool takes = live < lanes_wanted<goal> && has_rays(job, queue);
             const bool has_ended = live == 0 && packets[i].lanes != 0;
             if (takes || has_ended || steps - checked[i] >= job.max_steps) {
-                take_rays<has_ends>(job, queue, met, packets[i], walks[i], steps);
+                take_rays(job, queue, met, packets[i], walks[i], steps);
                 checked[i] = steps;
             }
             if (walks[i].live != 0) {
-                step<any_axis, has_ends>(job, packets[i], walks[i], steps + 1);
+                step<goal>(job, packets[i], walks[i], steps + 1);
                 prefetch_quads(job.records, walks[i].offsets);
+                if constexpr (goal == Goal::boundary) prefetch_sums(job, walks[i]);
             }
             goes_on = goes_on || packets[i].lanes != 0;
         }

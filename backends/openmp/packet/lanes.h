@@ -79,6 +79,10 @@ LANE_FN Mask equal(Words a, Words b)
 {
     return {_mm512_cmpeq_epi32_mask(reinterpret_cast<__m512i>(a), reinterpret_cast<__m512i>(b))};
 }
+LANE_FN Mask greater(Words a, Words b)
+{
+    return {_mm512_cmpgt_epu32_mask(reinterpret_cast<__m512i>(a), reinterpret_cast<__m512i>(b))};
+}
 LANE_FN Floats select(Mask mask, Floats a, Floats b)
 {
     return _mm512_mask_blend_ps(mask.of, b, a);
@@ -114,6 +118,10 @@ LANE_FN Mask equal(Floats a, Floats b)
 LANE_FN Mask equal(Words a, Words b)
 {
     return reinterpret_cast<Mask>(a == b);
+}
+LANE_FN Mask greater(Words a, Words b)
+{
+    return reinterpret_cast<Mask>(a > b);
 }
 LANE_FN Words select(Mask mask, Words a, Words b)
 {
@@ -157,9 +165,51 @@ LANE_FN Floats fused(Floats a, Floats b, Floats c)
 #endif
 }
 
+// The rounding error of a product, if it is no denormal: what lost_by() of shear.h computes.
+LANE_FN Floats lost_by(Floats a, Floats b, Floats product)
+{
+#if LANES == 16
+    return _mm512_fmsub_ps(a, b, product);
+#else
+    const Floats a_large = a * 4097.0f, b_large = b * 4097.0f;
+    const Floats a_high = a_large - (a_large - a), b_high = b_large - (b_large - b);
+    const Floats a_low = a - a_high, b_low = b - b_high;
+    return ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
+#endif
+}
+
+// The upper words of the products of words.
+LANE_FN Words high_product(Words a, Words b)
+{
+#if LANES == 16
+    const auto even = [](Words of) { return reinterpret_cast<__m512i>(of); };
+    const auto times = [](__m512i x, __m512i y) { // masked, with every bit: as in load_records()
+        return reinterpret_cast<Longs>(_mm512_maskz_mul_epu32(0xFF, x, y));
+    };
+#elif LANES == 8
+    const auto even = [](Words of) { return reinterpret_cast<__m256i>(of); };
+    const auto times = [](__m256i x, __m256i y) { return reinterpret_cast<Longs>(_mm256_mul_epu32(x, y)); };
+#else
+    const auto even = [](Words of) { return reinterpret_cast<Longs>(of) & 0xFFFFFFFFu; };
+    const auto times = [](Longs x, Longs y) { return x * y; };
+#endif
+    const auto odd = [&](Words of) { return even(reinterpret_cast<Words>(reinterpret_cast<Longs>(of) >> 32)); };
+    const Longs low = times(even(a), even(b)) >> 32, high = times(odd(a), odd(b)) >> 32 << 32;
+    return reinterpret_cast<Words>(low | high);
+}
+
 LANE_FN Words least(Words a, Words b)
 {
     return a < b ? a : b;
+}
+// As minimum() and maximum() of the kernels.
+LANE_FN Floats least(Floats a, Floats b)
+{
+    return a < b ? a : b;
+}
+LANE_FN Floats greatest(Floats a, Floats b)
+{
+    return a > b ? a : b;
 }
 LANE_FN Floats magnitude(Floats a)
 {

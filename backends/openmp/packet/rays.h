@@ -32,7 +32,7 @@ LANE_FN Vectors cross3(const Vectors& a, const Vectors& b)
 struct Packet {
     LaneWords numbers; // of the rays: by pixel of the block, row after row, or in the order in which they are given
     Floats origin[3], direction[3];
-    Floats end;    // the largest ray parameter of a hit
+    Floats end;    // the largest ray parameter of a hit; of rays that cross tets, the bits of their stretch
     uint lanes;    // that have a ray
     uint deferred; // lanes with a tie or another rare case
     // How a ray has ended: the exit's word, the record of the last tet that it left, the number of tets left. For a ray

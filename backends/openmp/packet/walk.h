@@ -17,7 +17,9 @@ template <int z>
 struct Walk : WalkState {
     Shear<z> shear;
     Seen carried[3];
-    Floats depths[3], reach; // of the carried vertices, and of the rays' ends; used only if rays have ends
+    // Of the carried vertices, and of the rays' ends. Of rays that cross tets, the vertices' coordinates (crossing.h).
+    // Not used for others without an end.
+    Floats depths[3], reach;
 };
 
 LANE_FN uint corner(uint face, uint index)
@@ -116,9 +118,14 @@ LANE_FN void go_on(WalkState& state, Mask lanes, Words exits)
     store(state.offsets, state.record * (4 * HALF32_QUADS));
 }
 
-// A step of all live lanes. steps: its number in the packet.
-template <int z, bool has_ends>
-LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint steps)
+LANE_FN Mask have_left(Words tets, uint count)
+{
+    return equal(least(tets, all(count)), all(count));
+}
+
+// A step of all live lanes. steps: its number in the packet. GivenWalk of given.h says what the goals do.
+template <Goal goal, class AnyWalk>
+LANE_FN void step(const PacketJob& job, Packet& packet, AnyWalk& walk, uint steps)
 {
     const Records at = load_records(job.records, walk.offsets);
     const Seen apex = seen_at(packet, walk.shear, at.apex.of);
@@ -133,14 +140,18 @@ LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint step
         replace(replaced[i], apex.y, walk.carried[i].y);
     }
     Words exit = exits_of(walk, replaced, at.exits.of);
-    const Mask live = mask_of(walk.live), ties = live & (s0.tie | s1.tie | s2.tie), decided = without(live, ties);
+    Mask undecided = s0.tie | s1.tie | s2.tie;
+    if constexpr (goal == Goal::boundary)
+        undecided = undecided | have_left(packet.steps + all(steps - 1u), job.max_steps);
+    const Mask live = mask_of(walk.live), ties = live & undecided, decided = without(live, ties);
     Mask is_end = equal(exit & all(3u), all(EXIT_END));
-    if constexpr (has_ends) {
-        const Floats depth = depth_at(packet, at.apex.of);
+    if constexpr (goal != Goal::triangle) {
+        const Floats depth = depth_for(packet, walk, at.apex.of);
         for (uint i = 0; i < 3; ++i)
             walk.depths[i] = select(replaced[i], depth, walk.depths[i]);
-        is_end = end_across(walk, is_end, exit);
     }
+    if constexpr (goal == Goal::end) is_end = end_across(walk, is_end, exit);
+    if constexpr (goal == Goal::boundary) is_end = is_end | cross(job, packet, walk, decided);
     // Without a condition: a branch would mostly be mispredicted.
     end_lanes(packet, decided & is_end, exit, walk.record, steps);
     packet.deferred |= lanes_of(ties);
@@ -171,7 +182,7 @@ LANE_FN void walk_on(const PacketJob& job, Packet* packets, Walk<z>* walks, uint
         live = 0;
         for (uint i = 0; i < count; ++i) {
             if (walks[i].live == 0) continue;
-            step<z, false>(job, packets[i], walks[i], steps);
+            step<Goal::triangle>(job, packets[i], walks[i], steps);
             prefetch_records(job, walks[i]);
             live |= walks[i].live;
         }

@@ -13,15 +13,17 @@ namespace {
 
 constexpr const char* volume_page = "docs/volume.md";
 
-/// Rows that do the same work, on all devices, the reference's first.
+/// Rows that do the same work in the same way, on all devices, the reference's first.
 using SameWork = std::vector<const RowRecord*>;
 
 std::vector<SameWork> works_of(const std::vector<RowRecord>& rows)
 {
     std::vector<SameWork> works;
     for (const RowRecord& row : rows) {
-        const auto known =
-            std::ranges::find_if(works, [&](const SameWork& work) { return same_work(work.front()->key, row.key); });
+        const auto known = std::ranges::find_if(works, [&](const SameWork& work) {
+            const RowKey& first = work.front()->key;
+            return same_work(first, row.key) && first.kernel.schedule == row.key.kernel.schedule;
+        });
         (known == works.end() ? works.emplace_back() : *known).push_back(&row);
     }
     return works;
@@ -175,7 +177,8 @@ PaperTable volume_table(const std::vector<RowRecord>& rows)
                       {"lost", "lost", "", 0}},
                      {"Random lines that cross the domain. The hash is that of all answers; 'same on' counts the "
                       "devices, and numbers of threads, that have it. Rates are Mrays/s of the device's time. All rays "
-                      "are verified. Methods plane and plucker walk by the rules of other programs, and may lose "
+                      "are verified; those of packets are compared with those of single rays. Methods plane and "
+                      "plucker walk by the rules of other programs, and may lose "
                       "rays.",
                       "Methods may go around an edge on different sides where a ray passes it within rounding; so "
                       "their hashes can differ although both are right."}};

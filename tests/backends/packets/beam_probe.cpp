@@ -11,6 +11,7 @@
 
 namespace {
 
+using tetrace::openmp::Goal;
 using tetrace::openmp::PacketJob;
 using tetrace::test::BeamAnswer;
 using tetrace::test::BeamEnd;
