@@ -24,6 +24,7 @@ json scene_head(const SceneRequest& request, const std::string& label)
             {"tets", name_of(how.tets)},
             {"effort", how.effort},
             {"repair", how.repair},
+            {"optimise_own", how.optimise_own},
             {"switches", how.switches},
             {"resolution", how.resolution}};
 }
