@@ -102,7 +102,8 @@ std::vector<double> costs_of(const Scene& scene)
     for (std::size_t i = 0; i < costs.size(); ++i) {
         const Tet& tet = scene.tets.tets[i];
         for (std::size_t face = 0; face < 4; ++face) {
-            if (!(reached[i] || has_own) || tet.faces[face] != FREE_FACE || tet.neighbours[face] == NO_HALF_FACE) continue;
+            if (!(reached[i] || has_own) || tet.faces[face] != FREE_FACE || tet.neighbours[face] == NO_HALF_FACE)
+                continue;
             const auto corner = [&](std::size_t k) {
                 return to_double(scene.tets.vertices[tet.vertices[face_corners[face][k]]]);
             };

@@ -53,14 +53,14 @@ bool may_have_tets(const fs::path& mesh)
 }
 
 /// Says that the tets are not the file's, if it has some.
-void tell_optimised(LoadedScene& loaded, const std::string& label)
+void tell_optimised(LoadedScene& loaded)
 {
     const Scene& scene = loaded.scene;
     if (scene.source_tets.empty() || scene.build.optimised.tets != TetsKind::rays) return;
-    loaded.messages.push_back(fmt::format(
-        "{}: {} tets, made for rays, take the place of the file's (--tets rays): they have its regions and the faces "
-        "between these, but not its numbers, so a tally is by region",
-        label, scene.source_tets.size()));
+    loaded.messages.push_back(fmt::format("{} tets, made for rays, take the place of the file's (--tets rays): they "
+                                          "have its regions and the faces between "
+                                          "these, but not its numbers, so a tally is by region",
+                                          scene.source_tets.size()));
 }
 
 /// Loads a scene of a mesh from the cache, or builds it into the cache first.
@@ -79,7 +79,7 @@ public:
         if (!read_cached()) build_alone();
         loaded_.hash = scene_hash(loaded_.scene);
         loaded_.file = file_;
-        tell_optimised(loaded_, label_);
+        tell_optimised(loaded_);
         return std::move(loaded_);
     }
 
@@ -321,7 +321,7 @@ LoadedScene load_scene_file(const SceneRequest& request, const Progress& progres
     loaded.hash = scene_hash(loaded.scene);
     loaded.file = request.name;
     loaded.views = own_views(loaded.scene.build);
-    tell_optimised(loaded, scene_label(request.name));
+    tell_optimised(loaded);
     Unused unused{request.build, {}};
     unused.add_build();
     unused.add_resolution();
@@ -348,10 +348,11 @@ LoadedScene load_mesh_scene(const SceneRequest& request, const fs::path& mesh, c
     const bool is_path = name.find('/') != std::string::npos || fs::path(name).has_extension();
     throw Error(
         is_path ? ErrorKind::missing : ErrorKind::usage,
-        fmt::format("scene {}: neither a name of the catalogue ({}) nor a file; give one of these names, or the "
-                    "path of a mesh (.ply, .obj, .off, .stl, .glb, .gltf; of tets: .mesh, .msh, .ele, .vtk, .vtu) or of a "
-                    ".tet file{}",
-                    name, fmt::join(names, ", "), did_you_mean(name, names)));
+        fmt::format(
+            "scene {}: neither a name of the catalogue ({}) nor a file; give one of these names, or the "
+            "path of a mesh (.ply, .obj, .off, .stl, .glb, .gltf; of tets: .mesh, .msh, .ele, .vtk, .vtu) or of a "
+            ".tet file{}",
+            name, fmt::join(names, ", "), did_you_mean(name, names)));
 }
 
 } // namespace

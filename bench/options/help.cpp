@@ -107,7 +107,8 @@ const VerbHelp verb_help[] = {
     {Verb::render, "write pictures",
      "Traces the selected views and writes a picture of each: the surface shaded by its normals, or in false colour "
      "the "
-     "steps of each ray, the tets that it crosses, the light of a medium, or a tally on a cut, side by side for several "
+     "steps of each ray, the tets that it crosses, the light of a medium, or a tally on a cut, side by side for "
+     "several "
      "kinds of tets. "
      "The pictures are made by the first selected row of each scene.\n\n"
      "The file of --out ends in .png, .exr or .ppm. With several pictures, scene, view and kind are inserted before "
@@ -117,7 +118,7 @@ const VerbHelp verb_help[] = {
      "  tetrace render --scene armadillo --picture normals,steps --size 512\n"
      "  tetrace render --scene bunny --tets cdt,rays --picture steps --views 0 --out steps.png\n"
      "  tetrace render --scene field --picture crossings,light --views 0\n"
-     "  tetrace render --scene nested --picture tally --rays diffuse --views 0\n"},
+     "  tetrace render --scene nested --picture tally --views 0 --size 512\n"},
     {Verb::reproduce, "regenerate the paper's tables and figures",
      "Regenerates the evaluation of Maria, Horna, Aveneau, \"Efficient Ray Traversal of Constrained Delaunay "
      "Tetrahedralization\" (GRAPP 2017), on every device that is here. The paper's numbers are printed next to ours, "

@@ -217,8 +217,8 @@ std::vector<OptionRow> row_options()
          "host, from the primary hits: 'shadow', towards a light, and 'ao', short rays in directions around the "
          "normal (for both, any hit will do); 'diffuse', one bounce; 'random', lines through the domain. 'render' has "
          "them for its picture 'tally'. Default: primary; for that picture, random.",
-         measuring | bit(Verb::render) | bit(Verb::trace) | bit(Verb::dump) | bit(Verb::page), true, append("--rays", &Options::rays),
-         usual_for(~(measuring | bit(Verb::dump)), "kind of rays: {}")},
+         measuring | bit(Verb::render) | bit(Verb::trace) | bit(Verb::dump) | bit(Verb::page), true,
+         append("--rays", &Options::rays), usual_for(~(measuring | bit(Verb::dump)), "kind of rays: {}")},
         {"Rows", "--ray-order", "ORDER",
          "Order of the rays of all kinds except primary: 'tiles', in the order of their pixels; 'morton', sorted by "
          "origin and direction; 'shuffled'. Each is a separate row. Default: tiles.",
@@ -411,7 +411,8 @@ std::vector<OptionRow> judging_options()
          "'normals', the surface shaded by its normals; or, in false colour with a scale bar: 'steps' of each ray to "
          "its "
          "hit; 'crossings', all tets that it crosses; 'depth', the optical depth of a medium, and 'light', what it "
-         "emits; 'tally', the lengths of the view's rays in each tet over its volume, on a cut through the middle of the "
+         "emits; 'tally', the lengths of the view's rays in each tet over its volume, on a cut through the middle of "
+         "the "
          "scene, across the view (docs/volume.md). Default: normals.",
          bit(Verb::render), true, append("--picture", &Options::pictures), usual_for(every_verb, "what is shown: {}")},
         {"Pictures", "--differences", "FOLDER",

@@ -117,6 +117,7 @@ Subject load_subject(const std::string& name, const Options& options)
         Options one = options;
         one.scenes = {name};
         one.tets = {tets};
+        one.rays = {RayKind::primary}; // others are a tally's
         auto scene = std::make_unique<SceneWork>(load_work(scene_requests(one).front(), one));
         const auto is_same = [&](const auto& other) { return other->loaded().hash == scene->loaded().hash; };
         if (std::ranges::any_of(subject.scenes, is_same)) continue;

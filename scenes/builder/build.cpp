@@ -328,8 +328,9 @@ PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& ta
     if (has_own && (options.tets != TetsKind::rays || !options.optimise_own)) return prepared;
     prepared.limits = {options.tets == TetsKind::rays ? options.effort : 0, options.optimise_for_s};
     prepared.limits.closed_too = has_own;
-    prepared.limits.several_pieces = prepared.limits.effort > 0 && count_pieces(prepared.facets()) > 1;
-    if (prepared.limits.several_pieces) // more vertices on the sides to begin with
+    const bool has_pieces = prepared.limits.effort > 0 && count_pieces(prepared.facets()) > 1;
+    prepared.limits.several_pieces = has_pieces || has_own;
+    if (has_pieces) // more vertices on the sides to begin with
         prepared.surface = domain_surface(make_domain(scene.mesh, options.domain, 2 * options.divisions));
     if (prepared.limits.effort > 0 && options.switches.find('q') == std::string::npos)
         prepared.points = graded_points(prepared.facets(), scene.domain);

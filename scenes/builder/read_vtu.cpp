@@ -50,7 +50,7 @@ private:
     void read_tag()
     {
         if (tag_.name == "VTKFile" && tag_.opens) return read_head();
-        if (tag_.name == "UnstructuredGrid") has_grid_ = true;
+        if (tag_.name == "UnstructuredGrid" && tag_.opens) has_grid_ = true;
         if (tag_.name == "Piece" && tag_.opens) return begin_piece();
         const bool is_section =
             tag_.name == "Points" || tag_.name == "Cells" || tag_.name == "CellData" || tag_.name == "PointData";
@@ -138,8 +138,8 @@ private:
                          convert_vtu);
         encoding_.is_appended_raw = kind == "raw";
         const auto begin = static_cast<std::size_t>(tag_.text.data() - source_.bytes().data());
-        const auto underscore = source_.bytes().find('_', begin);
-        if (underscore == std::string_view::npos)
+        const auto underscore = source_.bytes().find_first_not_of(" \t\r\n", begin);
+        if (underscore == std::string_view::npos || source_.bytes()[underscore] != '_')
             source_.fail(place("AppendedData"), "its data do not begin with an underscore");
         encoding_.appended = source_.bytes().substr(underscore + 1);
     }

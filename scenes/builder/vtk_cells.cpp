@@ -10,8 +10,8 @@
 namespace tetrace {
 namespace {
 
-constexpr std::array<std::string_view, no_region_array> region_names = {"region",    "medit:ref", "gmsh:physical", "tetgen:ref",
-                                                          "cell_tags", "regions",   "materialids"};
+constexpr std::array<std::string_view, no_region_array> region_names = {
+    "region", "medit:ref", "gmsh:physical", "tetgen:ref", "cell_tags", "regions", "materialids"};
 
 } // namespace
 

@@ -164,7 +164,8 @@ std::vector<double> values_of(const MeshSource& source, const VtuArray& array, c
         return values;
     }
     const auto type = std::ranges::find(vtu_types, array.type, &VtuType::name);
-    if (type == vtu_types.end()) source.fail(array.place, fmt::format("its type '{}' is not one of numbers", array.type));
+    if (type == vtu_types.end())
+        source.fail(array.place, fmt::format("its type '{}' is not one of numbers", array.type));
     if (array.format != "binary" && array.format != "appended")
         source.fail(array.place, fmt::format("its format '{}' is not ascii, binary or appended", array.format));
     VtuBytes bytes(source, array, encoding);

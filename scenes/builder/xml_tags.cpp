@@ -13,8 +13,7 @@ constexpr std::string_view xml_blanks = " \t\r\n";
 
 std::string_view XmlTag::attribute(std::string_view wanted) const
 {
-    const auto found =
-        std::ranges::find(attributes, wanted, &std::pair<std::string_view, std::string_view>::first);
+    const auto found = std::ranges::find(attributes, wanted, &std::pair<std::string_view, std::string_view>::first);
     return found == attributes.end() ? std::string_view() : found->second;
 }
 
@@ -55,26 +54,31 @@ bool XmlTags::next(XmlTag& tag)
     if (inside.starts_with('/')) inside.remove_prefix(1);
     if (inside.ends_with('/')) inside.remove_suffix(1);
     tag.name = inside.substr(0, inside.find_first_of(xml_blanks));
+    if (inside.find('<') != std::string_view::npos) fail_damaged(tag);
     read_attributes(inside.substr(tag.name.size()), tag);
     tag.text = bytes_.substr(end, bytes_.find('<', end) - end);
     at_ = end;
     return true;
 }
 
+void XmlTags::fail_damaged(const XmlTag& tag) const
+{
+    source_.fail(place(fmt::format("tag {:.40}", tag.name), tag.begin), "it is damaged");
+}
+
 void XmlTags::read_attributes(std::string_view rest, XmlTag& tag) const
 {
-    const auto damaged = [&] { source_.fail(place(fmt::format("tag {}", tag.name), tag.begin), "it is damaged"); };
     for (;;) {
         rest.remove_prefix(std::min(rest.find_first_not_of(xml_blanks), rest.size()));
         if (rest.empty()) return;
         const auto equals = rest.find('=');
-        if (equals == std::string_view::npos) damaged();
+        if (equals == std::string_view::npos) fail_damaged(tag);
         const std::string_view name = rest.substr(0, rest.find_first_of(" \t\r\n="));
         rest.remove_prefix(equals + 1);
         rest.remove_prefix(std::min(rest.find_first_not_of(xml_blanks), rest.size()));
-        if (rest.empty() || (rest.front() != '"' && rest.front() != '\'')) damaged();
+        if (rest.empty() || (rest.front() != '"' && rest.front() != '\'')) fail_damaged(tag);
         const auto end = rest.find(rest.front(), 1);
-        if (end == std::string_view::npos) damaged();
+        if (end == std::string_view::npos) fail_damaged(tag);
         tag.attributes.emplace_back(name, rest.substr(1, end - 1));
         rest.remove_prefix(end + 1);
     }

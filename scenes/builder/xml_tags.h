@@ -34,6 +34,7 @@ public:
 
 private:
     [[nodiscard]] std::size_t after(std::string_view mark);
+    [[noreturn]] void fail_damaged(const XmlTag& tag) const;
     void read_attributes(std::string_view rest, XmlTag& tag) const;
 
     const MeshSource& source_;

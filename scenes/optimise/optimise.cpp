@@ -74,8 +74,7 @@ class Optimiser {
 public:
     Optimiser(const TetMesh& mesh, const OptimiserLimits& limits, const Progress& progress)
         : limits_(limits), effort_(effort_of(limits)), progress_(progress), given_(mesh),
-          mesh_(arrays_of(mesh, limits.closed_too)),
-          per_area_(2 / boundary_area(mesh_)), least_(negligible / per_area_)
+          mesh_(arrays_of(mesh, limits.closed_too)), per_area_(2 / boundary_area(mesh_)), least_(negligible / per_area_)
     {
         report_.operations = {{{"edges removed"}, {"faces removed"}, {"moves"}, {"collapses"}, {"insertions"}}};
         report_.cost_before = cost_ = free_area(mesh_) * per_area_;
