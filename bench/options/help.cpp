@@ -38,7 +38,7 @@ const VerbHelp verb_help[] = {
      "  tetrace build --scene bunny --tets cdt,rays\n"
      "  tetrace build --scene dragon.ply --switches pq,pqY,pq5Y --domain tight,wide\n"
      "  tetrace build --scene bunny --divisions 4,8,16 --format markdown --out bunny.md\n"
-     "  tetrace build --scene bunny --tets rays --out bunny.vtk    its tets, for ParaView\n"},
+     "  tetrace build --scene bunny --tets rays --out bunny.vtu    its tets, for ParaView\n"},
     {Verb::bench, "verify rows, then measure them",
      "Verifies every ray of every row, then measures the rows. A row is a combination of scene, structure, method, "
      "layout, kind of rays, math mode, backend and device.\n\n"

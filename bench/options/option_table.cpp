@@ -111,7 +111,8 @@ std::vector<OptionRow> scene_options()
         {"Scenes", "--tets", "KIND",
          "How the domain is filled: 'rays', tets optimised so that rays cross few faces, or 'cdt', the constrained "
          "Delaunay tetrahedralization before that, as TetGen makes it. 'cubes', 'lattice' and .tet files have tets "
-         "of their own. 'build' accepts a list, and so does 'render', which then shows the steps side by side; "
+         "of their own. A file of tets, or 'field', keeps its tets unless 'rays' is named: then they are optimised "
+         "within their regions. 'build' accepts a list, and so does 'render', which then shows the steps side by side; "
          "'reproduce' has --builds. Default: rays.",
          building & ~bit(Verb::reproduce), true, append("--tets", &Options::tets),
          usual_for(bit(Verb::build) | bit(Verb::render), "how the domain is filled: {}")},
