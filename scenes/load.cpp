@@ -16,15 +16,12 @@
 #include "scenes/scene_file.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <functional>
 #include <optional>
 #include <span>
-#include <string_view>
 #include <utility>
 
 namespace tetrace {
@@ -33,23 +30,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string lower_extension(const fs::path& path)
-{
-    std::string extension = path.extension().string();
-    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
-    return extension;
-}
-
 bool is_unfinished(const Scene& scene)
 {
     return scene.build.optimised.end != OptimiserEnd::finished;
-}
-
-/// Whether a mesh file may have tets; those of unknown formats may.
-bool may_have_tets(const fs::path& mesh)
-{
-    constexpr std::array<std::string_view, 6> of_surfaces = {".ply", ".obj", ".off", ".stl", ".glb", ".gltf"};
-    return std::ranges::find(of_surfaces, lower_extension(mesh)) == of_surfaces.end();
 }
 
 /// Says that the tets are not the file's, if it has some.
