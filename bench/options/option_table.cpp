@@ -219,7 +219,8 @@ std::vector<OptionRow> row_options()
          "normal (for both, any hit will do); 'diffuse', one bounce; 'random', lines through the domain. 'render' has "
          "them for its picture 'tally'. Default: primary; for that picture, random.",
          measuring | bit(Verb::render) | bit(Verb::trace) | bit(Verb::dump) | bit(Verb::page), true,
-         append("--rays", &Options::rays), usual_for(~(measuring | bit(Verb::dump)), "kind of rays: {}")},
+         append("--rays", &Options::rays),
+         usual_for(~(measuring | bit(Verb::render) | bit(Verb::dump)), "kind of rays: {}")},
         {"Rows", "--ray-order", "ORDER",
          "Order of the rays of all kinds except primary: 'tiles', in the order of their pixels; 'morton', sorted by "
          "origin and direction; 'shuffled'. Each is a separate row. Default: tiles.",
