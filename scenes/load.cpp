@@ -40,10 +40,10 @@ void tell_optimised(LoadedScene& loaded)
 {
     const Scene& scene = loaded.scene;
     if (scene.source_tets.empty() || scene.build.optimised.tets != TetsKind::rays) return;
-    loaded.messages.push_back(fmt::format("{} tets, made for rays, take the place of the file's (--tets rays): they "
-                                          "have its regions and the faces between "
-                                          "these, but not its numbers, so a tally is by region",
-                                          scene.source_tets.size()));
+    loaded.messages.push_back(
+        fmt::format("{} tets, made for rays, take the place of the file's (--tets rays): they have its regions and the "
+                    "faces between these, but not its numbers, so a tally is by region",
+                    scene.source_tets.size()));
 }
 
 /// Loads a scene of a mesh from the cache, or builds it into the cache first.

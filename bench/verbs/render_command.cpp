@@ -167,7 +167,7 @@ std::vector<std::uint64_t> sums_of_view(RowRun& row, std::size_t view)
     return sums;
 }
 
-/// The sums of the tets on the cut, in each kind of tets.
+/// The sums of the view's rays on the cut, in each kind of tets.
 std::vector<StepsImage> tally_all(Subject& subject, std::size_t view)
 {
     std::vector<RowRun>& rows = subject.crossing[Task::tally];
@@ -192,6 +192,12 @@ std::vector<StepsImage> cross_all(Subject& subject, std::size_t view, const Cros
         tell_lost_rays(row, view, images.back().hits);
     }
     return images;
+}
+
+/// picture: one with a crossing_task().
+std::vector<StepsImage> cross_for(Picture picture, Subject& subject, std::size_t view)
+{
+    return picture == Picture::tally ? tally_all(subject, view) : cross_all(subject, view, *crossed_picture(picture));
 }
 
 /// The view's rays in each kind of tets.
@@ -226,11 +232,9 @@ void render_subject(Subject& subject, const Options& options, const PictureFiles
         const auto images = shows_hits ? trace_all(subject, view) : std::vector<StepsImage>();
         for (const Picture picture : pictures) {
             files.write({scene.label(), scene.view_numbers()[view], picture}, only_picture,
-                        !crossing_task(picture) ? draw(picture, images, scene, view)
-                                                : draw_steps(picture == Picture::tally
-                                                                 ? tally_all(subject, view)
-                                                                 : cross_all(subject, view, *crossed_picture(picture)),
-                                                             scene.width(), scene.height()));
+                        crossing_task(picture)
+                            ? draw_steps(cross_for(picture, subject, view), scene.width(), scene.height())
+                            : draw(picture, images, scene, view));
         }
     }
 }
