@@ -219,6 +219,7 @@ std::vector<std::string> arguments_of(const fs::path& mesh, const fs::path& out,
         "--effort",       std::to_string(options.effort),
         "--tetgen-for",   fmt::format("{:g}", tetgen_share * options.time_limit_s),
         "--optimise-for", fmt::format("{:g}", options.optimise_s > 0 ? options.optimise_s : options.time_limit_s / 2)};
+    if (options.optimise_own) arguments.emplace_back("--optimise-own");
     if (options.repair) arguments.insert(arguments.end(), {"--repair", "--weld", fmt::format("{}", attempt.weld)});
     if (!prepared.empty()) arguments.insert(arguments.end(), {"--prepared", prepared.string()});
     return arguments;

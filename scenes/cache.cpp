@@ -262,7 +262,8 @@ fs::path cached_scene_path(const std::string& label, std::uint64_t mesh_hash, co
                                   name_of(options.tets));
     if (!options.repair) key += " not repaired";
     if (options.tets == TetsKind::rays)
-        key += fmt::format(" effort {} optimiser {}", options.effort, optimiser_version);
+        key += fmt::format(" effort {} optimiser {}{}", options.effort, optimiser_version,
+                           options.optimise_own ? " of all tets" : "");
     return path_to_read(fmt::format("{}-{}.tet", safe_name(label), hash_text(hash_of(key))));
 }
 

@@ -80,6 +80,7 @@ struct BuildOptions {
     std::uint64_t memory_limit_bytes = std::uint64_t{8} << 30;
     bool mesh_will_do = false;    ///< whether a scene without tets is loaded if triangles cross or TetGen fails
     bool keep_unfinished = false; ///< whether Ctrl-C lets the optimiser end with what it has reached
+    bool optimise_own = false;    ///< whether TetsKind::rays is for the tets of a file of tets too
 };
 
 /// The options of a kind of tets where nothing else is asked for. Tets for rays have switches without q: their points

@@ -71,6 +71,25 @@ std::vector<std::int64_t> regions_of(const Scene& scene)
     return regions;
 }
 
+std::vector<std::int64_t> numbers_of(const Scene& scene)
+{
+    std::vector<std::int64_t> numbers(scene.tets.tets.size(), -1);
+    if (scene.build.optimised.tets != TetsKind::rays)
+        std::ranges::transform(scene.source_tets, numbers.begin(), &SourceTet::number);
+    return numbers;
+}
+
+std::vector<double> volumes_of(const Scene& scene)
+{
+    std::vector<double> volumes;
+    for (const Tet& tet : scene.tets.tets) {
+        const auto at = [&](std::size_t corner) { return to_double(scene.tets.vertices[tet.vertices[corner]]); };
+        const double six = dot(at(0) - at(3), cross(at(1) - at(3), at(2) - at(3)));
+        volumes.push_back(std::ldexp(std::abs(six) / 6, -3 * scene.build.scale_exponent));
+    }
+    return volumes;
+}
+
 namespace {
 
 std::vector<double> costs_of(const Scene& scene)
@@ -78,11 +97,13 @@ std::vector<double> costs_of(const Scene& scene)
     const Double3 size = to_double(scene.domain.high()) - to_double(scene.domain.low());
     const double box_area = 2 * (size.x * size.y + size.y * size.z + size.z * size.x);
     const std::vector<bool> reached = reached_tets(scene.tets);
+    const bool has_own = !scene.source_tets.empty(); // their insides are what rays are for
     std::vector<double> costs(scene.tets.tets.size());
     for (std::size_t i = 0; i < costs.size(); ++i) {
         const Tet& tet = scene.tets.tets[i];
         for (std::size_t face = 0; face < 4; ++face) {
-            if (!reached[i] || tet.faces[face] != FREE_FACE || tet.neighbours[face] == NO_HALF_FACE) continue;
+            if (!(reached[i] || has_own) || tet.faces[face] != FREE_FACE || tet.neighbours[face] == NO_HALF_FACE)
+                continue;
             const auto corner = [&](std::size_t k) {
                 return to_double(scene.tets.vertices[tet.vertices[face_corners[face][k]]]);
             };
@@ -113,13 +134,35 @@ public:
         for (std::size_t i = 0; i < cells; ++i)
             text_ += i < tets ? "10\n" : "5\n";
         add("CELL_DATA {}\n", cells);
-        add_cells("region", "long", regions_, [&](const ExportedFace& face) { return regions_[face.tet]; });
-        std::vector<std::int64_t> numbers(tets, -1), none = numbers;
-        for (std::size_t i = 0; i < scene_.source_tets.size(); ++i)
-            numbers[i] = scene_.source_tets[i].number;
-        add_cells("number", "long", numbers, [](const ExportedFace&) { return -1; });
-        add_cells("triangle", "long", none, [](const ExportedFace& face) { return face.triangle; });
-        add_cells("cost", "double", costs_of(scene_), [](const ExportedFace&) { return 0; });
+        add_cell_data();
+        return std::move(text_);
+    }
+
+    [[nodiscard]] std::string vtu()
+    {
+        const std::size_t tets = regions_.size(), cells = tets + faces_.size();
+        add("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
+            "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" "
+            "NumberOfCells=\"{}\">\n<Points>\n",
+            scene_.tets.vertices.size(), cells);
+        begin_array("Float64", "Points", 3);
+        add_points(false, "");
+        add("{}</Points>\n<Cells>\n", end_of_array);
+        begin_array("Int64", "connectivity");
+        add_tets([&](std::size_t, const auto& v) { add("{} {} {} {}\n", v[0], v[1], v[2], v[3]); });
+        add_faces([&](const auto& v, std::uint32_t) { add("{} {} {}\n", v[0], v[1], v[2]); });
+        text_ += end_of_array;
+        begin_array("Int64", "offsets");
+        for (std::size_t i = 0; i < cells; ++i)
+            add("{}\n", i < tets ? 4 * (i + 1) : 3 * (i + 1) + tets);
+        text_ += end_of_array;
+        begin_array("UInt8", "types");
+        for (std::size_t i = 0; i < cells; ++i)
+            text_ += i < tets ? "10\n" : "5\n";
+        add("{}</Cells>\n<CellData>\n", end_of_array);
+        is_xml_ = true;
+        add_cell_data();
+        text_ += "</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
         return std::move(text_);
     }
 
@@ -168,6 +211,11 @@ private:
     {
         fmt::format_to(std::back_inserter(text_), format, std::forward<Values>(values)...);
     }
+    static constexpr std::string_view end_of_array = "</DataArray>\n";
+    void begin_array(std::string_view type, std::string_view name, int components = 1)
+    {
+        add("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"ascii\">\n", type, name, components);
+    }
     static std::string one_line(std::string name)
     {
         std::ranges::replace(name, '\n', ' ');
@@ -210,20 +258,34 @@ private:
             write(std::array{vertices[a], vertices[b], vertices[c]}, face.triangle);
         }
     }
+    /// VTK's arrays of the cells: tets, then faces.
+    void add_cell_data()
+    {
+        const std::vector<std::int64_t> none(regions_.size(), -1);
+        add_cells("region", "long", regions_, [&](const ExportedFace& face) { return regions_[face.tet]; });
+        add_cells("number", "long", numbers_of(scene_), [](const ExportedFace&) { return -1; });
+        add_cells("triangle", "long", none, [](const ExportedFace& face) { return face.triangle; });
+        add_cells("cost", "double", costs_of(scene_), [](const ExportedFace&) { return 0; });
+    }
     template <class Values, class OfFace>
     void add_cells(std::string_view name, std::string_view type, const Values& of_tets, const OfFace& of_face)
     {
-        add("SCALARS {} {} 1\nLOOKUP_TABLE default\n", name, type);
+        if (is_xml_)
+            begin_array(type == "long" ? "Int64" : "Float64", name);
+        else
+            add("SCALARS {} {} 1\nLOOKUP_TABLE default\n", name, type);
         for (const auto value : of_tets)
             add("{}\n", value);
         for (const ExportedFace& face : faces_)
             add("{}\n", of_face(face));
+        if (is_xml_) text_ += end_of_array;
     }
 
     const Scene& scene_;
     std::vector<ExportedFace> faces_;
     std::vector<std::int64_t> regions_;
     std::string text_;
+    bool is_xml_ = false; ///< how arrays are written
 };
 
 } // namespace
@@ -231,7 +293,7 @@ private:
 bool is_tets_file(const std::filesystem::path& path)
 {
     const std::string ending = path.extension().string();
-    return ending == ".vtk" || ending == ".mesh" || ending == ".node" || ending == ".ele";
+    return ending == ".vtk" || ending == ".vtu" || ending == ".mesh" || ending == ".node" || ending == ".ele";
 }
 
 void export_tets(const Scene& scene, const std::filesystem::path& path)
@@ -239,6 +301,7 @@ void export_tets(const Scene& scene, const std::filesystem::path& path)
     const std::string ending = path.extension().string();
     TetsText text(scene);
     if (ending == ".vtk") return write_whole(path, text.vtk());
+    if (ending == ".vtu") return write_whole(path, text.vtu());
     if (ending == ".mesh") return write_whole(path, text.medit());
     std::filesystem::path file = path;
     write_whole(file.replace_extension(".node"), text.node());

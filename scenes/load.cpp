@@ -16,7 +16,6 @@
 #include "scenes/scene_file.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -36,13 +35,26 @@ bool is_unfinished(const Scene& scene)
     return scene.build.optimised.end != OptimiserEnd::finished;
 }
 
+/// Says that the tets are not the file's, if it has some.
+void tell_optimised(LoadedScene& loaded)
+{
+    const Scene& scene = loaded.scene;
+    if (scene.source_tets.empty() || scene.build.optimised.tets != TetsKind::rays) return;
+    loaded.messages.push_back(
+        fmt::format("{} tets, made for rays, take the place of the file's (--tets rays): they have its regions and the "
+                    "faces between these, but not its numbers, so a tally is by region",
+                    scene.source_tets.size()));
+}
+
 /// Loads a scene of a mesh from the cache, or builds it into the cache first.
 class MeshSceneLoader {
 public:
     MeshSceneLoader(const SceneRequest& request, fs::path mesh, const Progress& progress)
         : request_(request), progress_(progress), label_(scene_label(request.name)), mesh_(std::move(mesh)),
-          mesh_hash_(hash_mesh()), file_(cached_scene_path(label_, mesh_hash_, request.build))
+          mesh_hash_(hash_mesh())
     {
+        request_.build.optimise_own = request_.build.optimise_own && may_have_tets(mesh_);
+        file_ = cached_scene_path(label_, mesh_hash_, request_.build);
     }
 
     [[nodiscard]] LoadedScene load()
@@ -50,6 +62,7 @@ public:
         if (!read_cached()) build_alone();
         loaded_.hash = scene_hash(loaded_.scene);
         loaded_.file = file_;
+        tell_optimised(loaded_);
         return std::move(loaded_);
     }
 
@@ -65,7 +78,7 @@ private:
         if (progress_) progress_(stage, -1, "");
     }
 
-    const SceneRequest& request_;
+    SceneRequest request_;
     const Progress& progress_;
     std::string label_;
     fs::path mesh_;
@@ -78,8 +91,7 @@ private:
 std::uint64_t MeshSceneLoader::hash_mesh() const
 {
     Hasher hasher;
-    std::string extension = mesh_.extension().string();
-    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    std::string extension = lower_extension(mesh_);
     fs::path file = mesh_;
     // Tets and vertices are in both files; points without tets in one.
     std::error_code ignored; // then the points have no tets
@@ -133,8 +145,10 @@ bool MeshSceneLoader::read_cached()
         loaded_.messages.push_back(
             fmt::format("reading scene {}: foreign file: {}; built again", file_.string(), difference));
     const BuildInfo& info = loaded_.scene.build;
-    if (difference.empty() && !info.optimised.reason.empty() && loaded_.scene.source_tets.empty())
-        loaded_.messages.push_back(fmt::format("{}: the tets are TetGen's: {}", label_, info.optimised.reason));
+    const bool has_own = !loaded_.scene.source_tets.empty();
+    if (difference.empty() && !info.optimised.reason.empty() && (!has_own || request_.build.optimise_own))
+        loaded_.messages.push_back(
+            fmt::format("{}: the tets are {}: {}", label_, has_own ? "the file's" : "TetGen's", info.optimised.reason));
     const RepairInfo& repair = info.repair;
     if (difference.empty() && repair.crossing_pairs > 0)
         loaded_.messages.push_back(fmt::format(
@@ -290,6 +304,7 @@ LoadedScene load_scene_file(const SceneRequest& request, const Progress& progres
     loaded.hash = scene_hash(loaded.scene);
     loaded.file = request.name;
     loaded.views = own_views(loaded.scene.build);
+    tell_optimised(loaded);
     Unused unused{request.build, {}};
     unused.add_build();
     unused.add_resolution();
@@ -316,10 +331,11 @@ LoadedScene load_mesh_scene(const SceneRequest& request, const fs::path& mesh, c
     const bool is_path = name.find('/') != std::string::npos || fs::path(name).has_extension();
     throw Error(
         is_path ? ErrorKind::missing : ErrorKind::usage,
-        fmt::format("scene {}: neither a name of the catalogue ({}) nor a file; give one of these names, or the "
-                    "path of a mesh (.ply, .obj, .off, .stl, .glb, .gltf; of tets: .mesh, .msh, .ele, .vtk) or of a "
-                    ".tet file{}",
-                    name, fmt::join(names, ", "), did_you_mean(name, names)));
+        fmt::format(
+            "scene {}: neither a name of the catalogue ({}) nor a file; give one of these names, or the "
+            "path of a mesh (.ply, .obj, .off, .stl, .glb, .gltf; of tets: .mesh, .msh, .ele, .vtk, .vtu) or of a "
+            ".tet file{}",
+            name, fmt::join(names, ", "), did_you_mean(name, names)));
 }
 
 } // namespace

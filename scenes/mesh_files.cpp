@@ -10,6 +10,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <cerrno>
 #include <cstdint>
 #include <cstdlib>
@@ -87,6 +90,19 @@ std::vector<std::byte> read_archive_member(const std::filesystem::path& path, co
 }
 
 namespace fs = std::filesystem;
+
+std::string lower_extension(const fs::path& path)
+{
+    std::string extension = path.extension().string();
+    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    return extension;
+}
+
+bool may_have_tets(const fs::path& mesh)
+{
+    constexpr std::array<std::string_view, 6> of_surfaces = {".ply", ".obj", ".off", ".stl", ".glb", ".gltf"};
+    return std::ranges::find(of_surfaces, lower_extension(mesh)) == of_surfaces.end();
+}
 
 bool is_stream(const fs::path& path)
 {

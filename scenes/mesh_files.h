@@ -23,6 +23,12 @@ namespace tetrace {
 /// Throws Error{invalid_input} if it is empty or cannot be read, or if writing fails.
 [[nodiscard]] std::filesystem::path spooled_mesh(const std::filesystem::path& stream);
 
+/// In lower case, with its dot.
+[[nodiscard]] std::string lower_extension(const std::filesystem::path& path);
+
+/// Whether a mesh file may have tets; those of unknown formats may.
+[[nodiscard]] bool may_have_tets(const std::filesystem::path& mesh);
+
 /// The mesh file of a catalogue row whose source is `file`, or why there is none.
 struct MeshLocation {
     std::filesystem::path file;    ///< as a plain file; empty if it has to be unpacked, or is missing

@@ -17,15 +17,17 @@ using nlohmann::json;
 json scene_head(const SceneRequest& request, const std::string& label)
 {
     const BuildOptions& how = request.build;
-    return {{"label", label},
-            {"name", request.name},
-            {"domain", name_of(how.domain)},
-            {"divisions", how.divisions},
-            {"tets", name_of(how.tets)},
-            {"effort", how.effort},
-            {"repair", how.repair},
-            {"switches", how.switches},
-            {"resolution", how.resolution}};
+    json head = {{"label", label},
+                 {"name", request.name},
+                 {"domain", name_of(how.domain)},
+                 {"divisions", how.divisions},
+                 {"tets", name_of(how.tets)},
+                 {"effort", how.effort},
+                 {"repair", how.repair},
+                 {"switches", how.switches},
+                 {"resolution", how.resolution}};
+    if (how.optimise_own) head["optimise_own"] = true;
+    return head;
 }
 
 json run_head(const Options& options, const std::vector<RowKey>& keys)

@@ -38,7 +38,7 @@ const VerbHelp verb_help[] = {
      "  tetrace build --scene bunny --tets cdt,rays\n"
      "  tetrace build --scene dragon.ply --switches pq,pqY,pq5Y --domain tight,wide\n"
      "  tetrace build --scene bunny --divisions 4,8,16 --format markdown --out bunny.md\n"
-     "  tetrace build --scene bunny --tets rays --out bunny.vtk    its tets, for ParaView\n"},
+     "  tetrace build --scene bunny --tets rays --out bunny.vtu    its tets, for ParaView\n"},
     {Verb::bench, "verify rows, then measure them",
      "Verifies every ray of every row, then measures the rows. A row is a combination of scene, structure, method, "
      "layout, kind of rays, math mode, backend and device.\n\n"
@@ -107,7 +107,9 @@ const VerbHelp verb_help[] = {
     {Verb::render, "write pictures",
      "Traces the selected views and writes a picture of each: the surface shaded by its normals, or in false colour "
      "the "
-     "steps of each ray, the tets that it crosses, or the light of a medium, side by side for several kinds of tets. "
+     "steps of each ray, the tets that it crosses, the light of a medium, or a tally on a cut, side by side for "
+     "several "
+     "kinds of tets. "
      "The pictures are made by the first selected row of each scene.\n\n"
      "The file of --out ends in .png, .exr or .ppm. With several pictures, scene, view and kind are inserted before "
      "the extension. If it is a folder, the pictures in it are named SCENE-VIEW-KIND.png, or .ppm if OpenImageIO is "
@@ -115,7 +117,8 @@ const VerbHelp verb_help[] = {
      "  tetrace render --scene bunny --views 0 --out bunny.png\n"
      "  tetrace render --scene armadillo --picture normals,steps --size 512\n"
      "  tetrace render --scene bunny --tets cdt,rays --picture steps --views 0 --out steps.png\n"
-     "  tetrace render --scene field --picture crossings,light --views 0\n"},
+     "  tetrace render --scene field --picture crossings,light --views 0\n"
+     "  tetrace render --scene nested --picture tally --views 0 --size 512\n"},
     {Verb::reproduce, "regenerate the paper's tables and figures",
      "Regenerates the evaluation of Maria, Horna, Aveneau, \"Efficient Ray Traversal of Constrained Delaunay "
      "Tetrahedralization\" (GRAPP 2017), on every device that is here. The paper's numbers are printed next to ours, "

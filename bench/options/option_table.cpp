@@ -111,7 +111,8 @@ std::vector<OptionRow> scene_options()
         {"Scenes", "--tets", "KIND",
          "How the domain is filled: 'rays', tets optimised so that rays cross few faces, or 'cdt', the constrained "
          "Delaunay tetrahedralization before that, as TetGen makes it. 'cubes', 'lattice' and .tet files have tets "
-         "of their own. 'build' accepts a list, and so does 'render', which then shows the steps side by side; "
+         "of their own. A file of tets, or 'field', keeps its tets unless 'rays' is named: then they are optimised "
+         "within their regions. 'build' accepts a list, and so does 'render', which then shows the steps side by side; "
          "'reproduce' has --builds. Default: rays.",
          building & ~bit(Verb::reproduce), true, append("--tets", &Options::tets),
          usual_for(bit(Verb::build) | bit(Verb::render), "how the domain is filled: {}")},
@@ -215,10 +216,11 @@ std::vector<OptionRow> row_options()
         {"Rows", "--rays", "KIND",
          "Trace rays of this kind: 'primary', the image's own, made by the kernels. The others are made on the "
          "host, from the primary hits: 'shadow', towards a light, and 'ao', short rays in directions around the "
-         "normal (for both, any hit will do); 'diffuse', one bounce; 'random', lines through the domain. Default: "
-         "primary.",
-         measuring | bit(Verb::trace) | bit(Verb::dump) | bit(Verb::page), true, append("--rays", &Options::rays),
-         usual_for(~(measuring | bit(Verb::dump)), "kind of rays: {}")},
+         "normal (for both, any hit will do); 'diffuse', one bounce; 'random', lines through the domain. 'render' has "
+         "them for its picture 'tally'. Default: primary; for that picture, random.",
+         measuring | bit(Verb::render) | bit(Verb::trace) | bit(Verb::dump) | bit(Verb::page), true,
+         append("--rays", &Options::rays),
+         usual_for(~(measuring | bit(Verb::render) | bit(Verb::dump)), "kind of rays: {}")},
         {"Rows", "--ray-order", "ORDER",
          "Order of the rays of all kinds except primary: 'tiles', in the order of their pixels; 'morton', sorted by "
          "origin and direction; 'shuffled'. Each is a separate row. Default: tiles.",
@@ -411,7 +413,9 @@ std::vector<OptionRow> judging_options()
          "'normals', the surface shaded by its normals; or, in false colour with a scale bar: 'steps' of each ray to "
          "its "
          "hit; 'crossings', all tets that it crosses; 'depth', the optical depth of a medium, and 'light', what it "
-         "emits (docs/volume.md). Default: normals.",
+         "emits; 'tally', the lengths of the view's rays in each tet over its volume, on a cut through the middle of "
+         "the "
+         "scene, across the view (docs/volume.md). Default: normals.",
          bit(Verb::render), true, append("--picture", &Options::pictures), usual_for(every_verb, "what is shown: {}")},
         {"Pictures", "--differences", "FOLDER",
          "Write a picture of each view in which a row differs from openmp, with the differing pixels marked: PNG, or "

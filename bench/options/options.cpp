@@ -81,7 +81,9 @@ void apply_values(Options& options, const OptionRow& row, const std::vector<std:
 void clear_default(Options& options, const std::string& name)
 {
     if (name == "--domain") options.domains.clear();
-    if (name == "--tets") options.tets.clear();
+    if (name != "--tets") return;
+    options.tets.clear();
+    options.names_tets = true;
 }
 
 void apply_row(Options& options, const OptionRow& row, CLI::App& app)
@@ -184,6 +186,10 @@ void check_together(const Options& options)
     check_single(options, "--divisions", options.divisions.size());
     check_single(options, "--switches", options.switches.size());
     require_views(options);
+    if (options.verb == Verb::render) check_single(options, "--rays", options.rays.size());
+    if (options.verb == Verb::render && !options.rays.empty() &&
+        std::ranges::find(options.pictures, Picture::tally) == options.pictures.end())
+        throw Error(ErrorKind::usage, "--rays: only --picture tally shows other rays than the image's own");
     if ((options.defects || options.stress) && !shard_of(options).is_whole())
         throw Error(ErrorKind::usage, std::string(options.defects ? "--defects" : "--stress") +
                                           " takes only seconds and cannot be sharded; leave out --shard");
@@ -451,6 +457,7 @@ std::vector<SceneRequest> scene_requests(const Options& options)
     build.mesh_will_do = std::ranges::any_of(options.targets, is_bench_run) || options.verb == Verb::bench ||
                          options.verb == Verb::check || options.verb == Verb::render;
     build.keep_unfinished = options.verb == Verb::build;
+    build.optimise_own = options.names_tets;
     build.memory_limit_bytes = options.memory_limit_bytes != 0 ? options.memory_limit_bytes : usual_memory_limit();
     const bool are_pinned = options.verb != Verb::build && is_usual_build(build);
     std::vector<SceneRequest> requests;

@@ -50,11 +50,11 @@ enum class Format { table, json, csv, markdown };
 template <>
 inline constexpr auto enum_names<Format> = names_up_to<Format::markdown>("table", "json", "csv", "markdown");
 
-/// A picture that `render` writes: of hits; or, from crossings on, of all tets of each ray.
-enum class Picture { normals, steps, crossings, depth, light };
+/// A picture that `render` writes: of hits; or, from crossings on, of all tets of each ray; or of the sums of the tets.
+enum class Picture { normals, steps, crossings, depth, light, tally };
 template <>
-inline constexpr auto enum_names<Picture> = names_up_to<Picture::light>("normals", "steps", "crossings", "depth",
-                                                                        "light");
+inline constexpr auto enum_names<Picture> = names_up_to<Picture::tally>("normals", "steps", "crossings", "depth",
+                                                                        "light", "tally");
 
 /// A table or a figure of the paper that `reproduce` measures again. Three are not in the paper: rivals, our own
 /// claims about tets and BVHs; ladder, what a step costs by the size of a scene; and volume, all tets of a ray.
@@ -129,6 +129,7 @@ struct Options {
     std::vector<std::string> scenes; ///< catalogue names or paths, as given
     std::vector<DomainKind> domains = {BuildOptions{}.domain};
     std::vector<TetsKind> tets = {TetsKind::rays};
+    bool names_tets = false;              ///< whether --tets was given: only then rays are for a file's own tets too
     std::vector<std::uint32_t> divisions; ///< empty: those of default_build()
     std::vector<std::string> switches;    ///< empty: those of default_build()
     std::optional<bool> repair;           ///< empty: as true

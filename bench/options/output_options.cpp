@@ -52,7 +52,8 @@ std::vector<OptionRow> output_options()
          "is the folder of the files, and is required, as is the .npy file of 'rays'. Without --format, its extension "
          "sets a result's format: .json, .csv, "
          ".md, or .txt for the table; the table still goes to standard output. 'build' writes the tets of a single "
-         "scene to a .vtk, .mesh (MEDIT) or .node (TetGen) file. '-' means standard output instead of a file. -o is "
+         "scene to a .vtu, .vtk, .mesh (MEDIT) or .node (TetGen) file. '-' means standard output instead of a file. -o "
+         "is "
          "short for it. Default: none; of 'render' the current folder, of 'report' report.html, of 'page' "
          "tetrace.html.",
          reporting | bit(Verb::render) | bit(Verb::report) | bit(Verb::page) | bit(Verb::dump) | bit(Verb::rays), false,

@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <numeric>
 
 namespace tetrace {
 
@@ -144,29 +145,17 @@ private:
     std::vector<NpyColumn> columns_;
 };
 
-/// In units of the mesh.
-double volume_of(const Scene& scene, std::size_t tet)
-{
-    const auto& corners = scene.tets.tets[tet].vertices;
-    const auto at = [&](std::size_t corner) { return to_double(scene.tets.vertices[corners[corner]]); };
-    const Double3 apex = at(3);
-    const double six = dot(at(0) - apex, cross(at(1) - apex, at(2) - apex));
-    return std::ldexp(std::abs(six) / 6, -3 * scene.build.scale_exponent);
-}
-
 /// The sums in the order of the scene's tets, with what the user calls these.
 std::vector<NpyColumn> tally_columns(const Scene& scene, std::span<const std::uint32_t> packed_of_mesh,
                                      const std::vector<std::uint64_t>& sums)
 {
     const std::size_t tets = sums.size();
-    const std::vector<SourceTet>& named = scene.source_tets;
     std::vector<NpyColumn> columns;
-    columns.push_back(column("number", tets, [&](std::size_t i) {
-        if (named.empty()) return static_cast<std::int64_t>(i);
-        return i < named.size() ? std::int64_t{named[i].number} : std::int64_t{no_number};
-    }));
+    std::vector<std::int64_t> numbers = numbers_of(scene);
+    if (scene.source_tets.empty()) std::iota(numbers.begin(), numbers.end(), 0);
+    columns.push_back({"number", std::move(numbers)});
     columns.push_back({"region", regions_of(scene)});
-    columns.push_back(column("volume", tets, [&](std::size_t i) { return volume_of(scene, i); }));
+    columns.push_back({"volume", volumes_of(scene)});
     columns.push_back(column("units", tets, [&](std::size_t i) { return sums[packed_of_mesh[i]]; }));
     columns.push_back(column("length", tets, [&](std::size_t i) {
         return std::ldexp(length_of(sums[packed_of_mesh[i]]), -scene.build.scale_exponent);

@@ -289,7 +289,8 @@ const CrossedPicture* crossed_picture(Picture picture)
     case Picture::depth: return &depth;
     case Picture::light: return &light;
     case Picture::normals:
-    case Picture::steps: break;
+    case Picture::steps:
+    case Picture::tally: break;
     }
     return nullptr;
 }

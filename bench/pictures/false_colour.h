@@ -60,7 +60,7 @@ struct CrossedPicture {
     std::uint32_t (*value)(const Hit& answer);
 };
 
-/// Null for pictures of hits.
+/// Null for pictures of hits, and of a tally.
 [[nodiscard]] const CrossedPicture* crossed_picture(Picture picture);
 
 } // namespace tetrace

@@ -152,7 +152,7 @@ std::string scene_arguments(const SceneRequest& request, const Options& options)
     if (!options.repair.value_or(true)) text += " --no-repair";
     const Options usual;
     add("--domain", std::string(name_of(options.domains.front())), options.domains == usual.domains);
-    add("--tets", std::string(name_of(options.tets.front())), options.tets == usual.tets);
+    add("--tets", std::string(name_of(options.tets.front())), options.tets == usual.tets && !options.names_tets);
     add("--effort", fmt::format("{}", options.effort), options.effort == usual.effort);
     for (const std::uint32_t divisions : options.divisions)
         add("--divisions", fmt::format("{}", divisions), false);

@@ -276,8 +276,9 @@ Report build_report(const std::vector<Built>& all, const Options& options)
     sheet.gap();
     add_spheres(sheet, all);
     sheet.line(fmt::format(
-        "Steps of primary rays: {} views of {} at {}x{}. Cost: free faces outside the objects that a "
-        "uniform line crosses, before and after optimising. Reached: what rays from outside can load; the rest is "
+        "Steps of primary rays: {} views of {} at {}x{}. Cost: free faces outside the objects (of a file of tets, "
+        "inside too) that a uniform line crosses, before and after optimising. Reached: what rays from outside can "
+        "load; the rest is "
         "inside closed objects.",
         selected_views(options).size(), camera_set_name(options), options.width, options.height));
     return {std::move(sheet), full, {{"tetrace", std::move(section)}}};

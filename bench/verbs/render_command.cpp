@@ -1,3 +1,4 @@
+#include "bench/pictures/cut.h"
 #include "bench/pictures/false_colour.h"
 #include "bench/pictures/images.h"
 #include "bench/pictures/shading.h"
@@ -5,6 +6,7 @@
 #include "bench/rows/row_tracing.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
+#include "scenes/export_tets.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -61,7 +63,10 @@ std::vector<Hit> trace(RowRun& row, std::size_t view)
 Options crossing_options(Options options, Task task)
 {
     options.tasks = {task};
-    options.rays = {RayKind::primary};
+    if (task != Task::tally)
+        options.rays = {RayKind::primary};
+    else if (options.rays.empty())
+        options.rays = {RayKind::random};
     if (options.methods.empty()) options.methods = {Method::project};
     return options;
 }
@@ -112,6 +117,7 @@ Subject load_subject(const std::string& name, const Options& options)
         Options one = options;
         one.scenes = {name};
         one.tets = {tets};
+        one.rays = {RayKind::primary}; // others are a tally's
         auto scene = std::make_unique<SceneWork>(load_work(scene_requests(one).front(), one));
         const auto is_same = [&](const auto& other) { return other->loaded().hash == scene->loaded().hash; };
         if (std::ranges::any_of(subject.scenes, is_same)) continue;
@@ -128,15 +134,52 @@ std::string title_of(const RowRun& row, std::size_t view, bool names_tets)
     return title;
 }
 
+/// The task of the rows that cross tets for a picture; none for pictures of hits.
+std::optional<Task> crossing_task(Picture picture)
+{
+    if (picture == Picture::tally) return Task::tally;
+    const CrossedPicture* const crossed = crossed_picture(picture);
+    return crossed != nullptr ? std::optional(crossed->task) : std::nullopt;
+}
+
 /// Opens the rows of all pictures of what rays cross, before the first picture is written.
 void open_crossing_rows(Subject& subject, const std::vector<Picture>& pictures, const Options& options)
 {
     for (const Picture picture : pictures) {
-        const CrossedPicture* const crossed = crossed_picture(picture);
-        if (crossed == nullptr || !subject.crossing[crossed->task].empty()) continue;
+        const std::optional<Task> task = crossing_task(picture);
+        if (!task || !subject.crossing[*task].empty()) continue;
         for (const auto& scene : subject.scenes)
-            subject.crossing[crossed->task].push_back(open_first_row(*scene, crossing_options(options, crossed->task)));
+            subject.crossing[*task].push_back(open_first_row(*scene, crossing_options(options, *task)));
     }
+}
+
+/// The sums of the view's rays in the mesh's order.
+std::vector<std::uint64_t> sums_of_view(RowRun& row, std::size_t view)
+{
+    std::vector<std::uint64_t> sums(row.scene->loaded().scene.tets.tets.size());
+    std::vector<Hit> answers(ray_count(row, view), Hit{POISON, NO_TET, 0, 0, 0, 0});
+    if (answers.empty()) return sums;
+    static_cast<void>(trace_view(row, view, answers));
+    tell_lost_rays(row, view, answers);
+    const std::vector<std::uint64_t> packed = row.session->tally();
+    std::ranges::transform(row.packed->data.packed_of_mesh, sums.begin(),
+                           [&](std::uint32_t place) { return packed[place]; });
+    return sums;
+}
+
+/// The sums of the view's rays on the cut, in each kind of tets.
+std::vector<StepsImage> tally_all(Subject& subject, std::size_t view)
+{
+    std::vector<RowRun>& rows = subject.crossing[Task::tally];
+    std::vector<StepsImage> images;
+    for (RowRun& row : rows) {
+        const SceneWork& scene = *row.scene;
+        const auto tets = tets_on_cut(scene.loaded().scene, scene.views()[view], scene.width(), scene.height());
+        images.push_back({tally_at_pixels(tets, sums_of_view(row, view), volumes_of(scene.loaded().scene)),
+                          title_of(row, view, rows.size() > 1),
+                          fmt::format("tally of {} rays, % of the mean", name_of(row.key.rays))});
+    }
+    return images;
 }
 
 /// What each ray of the view crosses in each kind of tets.
@@ -149,6 +192,12 @@ std::vector<StepsImage> cross_all(Subject& subject, std::size_t view, const Cros
         tell_lost_rays(row, view, images.back().hits);
     }
     return images;
+}
+
+/// picture: one with a crossing_task().
+std::vector<StepsImage> cross_for(Picture picture, Subject& subject, std::size_t view)
+{
+    return picture == Picture::tally ? tally_all(subject, view) : cross_all(subject, view, *crossed_picture(picture));
 }
 
 /// The view's rays in each kind of tets.
@@ -179,14 +228,13 @@ void render_subject(Subject& subject, const Options& options, const PictureFiles
     for (std::size_t view = 0; view < scene.views().size(); ++view) {
         progress_line().show("rendering " + scene.label(),
                              static_cast<double>(view) / static_cast<double>(scene.views().size()));
-        const bool shows_hits = std::ranges::any_of(pictures, [](Picture p) { return crossed_picture(p) == nullptr; });
+        const bool shows_hits = std::ranges::any_of(pictures, [](Picture p) { return !crossing_task(p); });
         const auto images = shows_hits ? trace_all(subject, view) : std::vector<StepsImage>();
         for (const Picture picture : pictures) {
-            const CrossedPicture* const crossed = crossed_picture(picture);
             files.write({scene.label(), scene.view_numbers()[view], picture}, only_picture,
-                        crossed == nullptr
-                            ? draw(picture, images, scene, view)
-                            : draw_steps(cross_all(subject, view, *crossed), scene.width(), scene.height()));
+                        crossing_task(picture)
+                            ? draw_steps(cross_for(picture, subject, view), scene.width(), scene.height())
+                            : draw(picture, images, scene, view));
         }
     }
 }

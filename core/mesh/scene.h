@@ -41,7 +41,8 @@ struct OptimiserOperation {
     friend bool operator==(const OptimiserOperation&, const OptimiserOperation&) = default;
 };
 
-/// What the optimiser of tets did. Costs: free faces outside the objects that a uniform line crosses.
+/// What the optimiser of tets did. Costs: free faces outside the objects (of a file of tets, inside too) that a uniform
+/// line crosses.
 struct OptimisedInfo {
     TetsKind asked = TetsKind::cdt;
     TetsKind tets = TetsKind::cdt; ///< what the scene has
@@ -93,7 +94,7 @@ struct BuildInfo {
 
 /// What the user's own file of tets says of one of them.
 struct SourceTet {
-    std::uint32_t number = 0; ///< in the file, as its format counts
+    std::uint32_t number = 0; ///< in the file, as its format counts; 0 if the tets were optimised
     std::int32_t region = 0;
 
     friend bool operator==(const SourceTet&, const SourceTet&) = default;
@@ -109,7 +110,8 @@ struct Scene {
     TetMesh tets;
     Domain domain;
     BuildInfo build;
-    /// Of the first tets, if the mesh file has tets: they are the file's, in its order. The others fill the domain.
+    /// Of the first tets, if the mesh file has tets: they are the file's, in its order, or, if BuildInfo::optimised
+    /// says so, others in the same regions. The rest fills the domain.
     std::vector<SourceTet> source_tets = {};
 
     friend bool operator==(const Scene&, const Scene&) = default;

@@ -5,6 +5,7 @@
 #include "core/mesh/entry_grid.h"
 #include "scenes/builder/empty_triangles.h"
 #include "scenes/builder/failure.h"
+#include "scenes/builder/kept_regions.h"
 #include "scenes/builder/mesh_reader.h"
 #include "scenes/builder/repair/repair.h"
 #include "scenes/builder/repair/self_intersection.h"
@@ -228,11 +229,17 @@ void optimise_for_rays(Scene& scene, std::string_view maker, const OptimiserLimi
     info.rounds = result.report.rounds;
     info.end = result.report.end;
     info.reason = objection_to(result, scene);
+    std::vector<SourceTet> regions;
+    if (info.reason.empty() && !scene.source_tets.empty()) {
+        regions = keep_regions(scene, result.mesh);
+        if (regions.empty()) info.reason = "the optimised tets fail a check: regions; please report it";
+    }
     if (info.reason.empty()) {
         info.tets = TetsKind::rays;
         for (const OperationCount& operation : result.report.operations)
             info.operations.push_back({std::string(operation.name), operation.done, operation.gain, operation.seconds});
         scene.tets = std::move(result.mesh);
+        scene.source_tets = std::move(regions);
         note_result(result.report, talk);
     } else {
         info.cost_after = info.cost_before;
@@ -314,18 +321,19 @@ PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& ta
     prepared.surface = domain_surface(scene.domain);
     scene.build.optimised.asked = options.tets;
     if (options.mesh_only) return prepared;
-    if (!prepared.own.tets.empty()) {
-        scene.build.optimised.effort = options.effort;
-        if (options.tets == TetsKind::rays)
-            scene.build.optimised.reason = "the tets of its file are not optimised, since they are data";
-        return prepared;
-    }
+    const bool has_own = !prepared.own.tets.empty();
+    if (has_own) scene.build.optimised.effort = options.effort;
+    if (has_own && options.tets == TetsKind::rays && !options.optimise_own)
+        scene.build.optimised.reason = "the tets of its file are data, and optimised only if --tets rays is named";
+    if (has_own && (options.tets != TetsKind::rays || !options.optimise_own)) return prepared;
     prepared.limits = {options.tets == TetsKind::rays ? options.effort : 0, options.optimise_for_s};
-    prepared.limits.several_pieces = prepared.limits.effort > 0 && count_pieces(scene.mesh) > 1;
-    if (prepared.limits.several_pieces) // more vertices on the sides to begin with
+    prepared.limits.closed_too = has_own;
+    const bool has_pieces = prepared.limits.effort > 0 && count_pieces(prepared.facets()) > 1;
+    prepared.limits.several_pieces = has_pieces || has_own;
+    if (has_pieces) // more vertices on the sides to begin with
         prepared.surface = domain_surface(make_domain(scene.mesh, options.domain, 2 * options.divisions));
     if (prepared.limits.effort > 0 && options.switches.find('q') == std::string::npos)
-        prepared.points = graded_points(scene.mesh, scene.domain);
+        prepared.points = graded_points(prepared.facets(), scene.domain);
     return prepared;
 }
 
@@ -347,10 +355,9 @@ Scene finish_scene(PreparedScene prepared, const RawTets& filled, const BuilderT
                               rounding.refilled));
     require_sound(scene, output, rounding);
     require_sound_sides(scene, output);
-    if (has_own)
-        scene.source_tets = std::move(prepared.own.numbers);
-    else if (scene.build.optimised.asked == TetsKind::rays)
-        optimise_for_rays(scene, output.maker, prepared.limits, talk);
+    scene.source_tets = std::move(prepared.own.numbers);
+    if (scene.build.optimised.asked == TetsKind::rays && (!has_own || prepared.limits.closed_too))
+        optimise_for_rays(scene, has_own ? "the file" : output.maker, prepared.limits, talk);
     scene.build.build_s = prepared.watch.seconds();
     return scene;
 }

@@ -48,6 +48,7 @@ struct BuilderOptions {
     bool mesh_only = false;      ///< no tets: the mesh is read, cleaned and placed in its domain
     double tetgen_for_s = 0;     ///< TetGen has failed if it takes more processor time; 0: no limit
     double optimise_for_s = 300; ///< the optimiser stops then, with what it has reached; 0: no limit
+    bool optimise_own = false;   ///< whether TetsKind::rays is for the tets of a file of tets too
     std::filesystem::path prepared =
         {}; ///< the mesh as repaired and placed: read if it is there, else written; empty: no
 };
@@ -66,7 +67,7 @@ struct PreparedScene {
     std::vector<Float3> points; ///< more vertices for TetGen; if switches lack q and tets are for rays
     OptimiserLimits limits;
     Stopwatch watch;  ///< since its mesh was read
-    OwnTets own = {}; ///< of a file of tets; they stay as they are, and are not optimised
+    OwnTets own = {}; ///< of a file of tets; they stay as they are, unless limits.closed_too
 
     /// The triangles that TetGen keeps.
     [[nodiscard]] const TriangleMesh& facets() const { return own.tets.empty() ? scene.mesh : own.hull; }
@@ -87,7 +88,8 @@ struct PreparedScene {
 
 /// Joins raw tets with those of the file, if it has some. Converts them and checks them: structure, orientation, every
 /// input triangle covered, the domain filled, the entry grid complete. Throws BuilderFailure{BUILDER_ABSURD_OUTPUT}
-/// naming the check that failed. Then optimises the tets, if they are for rays; what that cannot improve, or what fails
+/// naming the check that failed. Then optimises the tets, if they are for rays, those of a file only if they are to be
+/// (these keep their regions, and lose their numbers); what that cannot improve, or what fails
 /// a check, stays as it was, with the reason.
 [[nodiscard]] Scene finish_scene(PreparedScene prepared, const RawTets& filled, const BuilderTalk& talk);
 

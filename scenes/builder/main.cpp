@@ -154,6 +154,8 @@ std::optional<int> parse(int argc, char** argv, BuilderOptions& options)
                    "the optimiser stops after this many seconds, with the tets reached so far; default: 300")
         ->check(CLI::Range(0.0, 1e6).description(""))
         ->type_name("S");
+    app.add_flag("--optimise-own", options.optimise_own,
+                 "with --tets rays: optimise the tets of a file of tets too, within their regions");
     app.footer("After SIGINT the optimiser ends, and what it has reached is checked and written.\n"
                "Exit codes: 0 good; 2 usage; 3 file missing; 4 internal; 5 bad mesh; 10 self-intersections; 11 no "
                "tets could be made;\n"

@@ -45,6 +45,7 @@ std::string format_of(std::string_view bytes)
     if (begin.starts_with("meshversionformatted")) return ".mesh";
     if (begin.starts_with("$meshformat")) return ".msh";
     if (begin.starts_with("# vtk")) return ".vtk";
+    if (begin.starts_with("<?xml") || begin.starts_with("<vtkfile")) return ".vtu";
     if (begin.starts_with("solid") || bytes.substr(0, 200).find('\0') != std::string_view::npos) return ".stl";
     return begin.substr(0, begin.find(' ')).find("off") != std::string::npos ? ".off" : ".obj";
 }
@@ -61,9 +62,10 @@ void read_as(const std::string& extension, MeshSource& source)
     if (extension == ".ele") return read_tetgen(source);
     if (extension == ".node") return read_points(source);
     if (extension == ".vtk") return read_vtk(source);
+    if (extension == ".vtu") return read_vtu(source);
     source.fail("name", "the format '" + extension + "' is not known",
                 "use a file with the extension .ply, .obj, .off, .stl, .glb or .gltf, or one of tets: .mesh, .msh, "
-                ".ele or .vtk; meshio converts others to them: meshio convert FILE NEW.mesh");
+                ".ele, .vtk or .vtu; meshio converts others to them: meshio convert FILE NEW.mesh");
 }
 
 MeshSoup parse(const std::filesystem::path& path, std::string_view bytes, const std::filesystem::path& folder)

@@ -132,5 +132,6 @@ void read_gmsh(MeshSource& source);
 void read_tetgen(MeshSource& source);
 void read_points(MeshSource& source);
 void read_vtk(MeshSource& source);
+void read_vtu(MeshSource& source);
 
 } // namespace tetrace

@@ -1,18 +1,11 @@
 // Legacy VTK in ASCII, up to version 5.1: https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html
+#include "scenes/builder/vtk_cells.h"
 #include "scenes/builder/word_reader.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-
 namespace tetrace {
 namespace {
-
-// As tetrace and meshio name the array that says a cell's region; the first that is there.
-constexpr std::array<std::string_view, 7> region_names = {"region",    "medit:ref", "gmsh:physical", "tetgen:ref",
-                                                          "cell_tags", "regions",   "materialids"};
 
 class VtkReader {
 public:
@@ -51,7 +44,7 @@ private:
     {
         if (!words_.next_line().starts_with("# vtk DataFile"))
             words_.fail("it does not begin with '# vtk DataFile'",
-                        "this is not a legacy VTK file: convert it, for example .vtu with meshio");
+                        "this is not a legacy VTK file: convert it, for example with meshio");
         words_.next_line(); // the title
         if (lower_case(words_.next()) != "ascii")
             words_.fail("it is binary", "save it as ASCII, for example: meshio ascii FILE.vtk");
@@ -134,8 +127,7 @@ private:
     }
     void read_array(const std::string& name, std::size_t components)
     {
-        const auto rank =
-            static_cast<std::size_t>(std::ranges::find(region_names, lower_case(name)) - region_names.begin());
+        const std::size_t rank = region_rank(name);
         if (!is_of_cells_ || components != 1 || rank >= rank_) {
             words_.skip_numbers();
             return;
@@ -143,43 +135,23 @@ private:
         rank_ = rank;
         words_.begin(fmt::format("array {}", name));
         regions_.assign(cells_.size(), 0);
-        for (std::int64_t& region : regions_) {
-            const double value = words_.number();
-            if (!(std::abs(value) < 0x1p31) || value != std::floor(value))
-                words_.fail(fmt::format("{} is not a whole number of 32 bits, as a region must be", value));
-            region = static_cast<std::int64_t>(value);
-        }
+        for (std::int64_t& region : regions_)
+            region = region_of_value(source_, words_.number(), words_.place());
     }
 
-    /// Of a cell of higher order only the corners, which come first.
     void add_cells()
     {
         if (types_.size() != cells_.size())
             words_.fail(fmt::format("{} cells have {} types", cells_.size(), types_.size()));
         for (std::size_t i = 0; i < cells_.size(); ++i)
             add_cell(i);
-        if (regions_.empty())
-            source_.note(fmt::format("no array of the cells is named region (or {}): all tets are of one region",
-                                     fmt::join(region_names.begin() + 1, region_names.end(), ", ")));
+        if (regions_.empty()) note_without_regions(source_);
     }
     void add_cell(std::size_t index)
     {
-        const std::int64_t type = types_[index];
-        const std::string place = fmt::format("cell {} (line {})", index, lines_[index]);
-        std::vector<std::int64_t>& corners = cells_[index];
-        const bool is_tet = type == 10 || type == 24, is_triangle = type == 5 || type == 22,
-                   is_quad = type == 9 || type == 23;
-        if ((type >= 1 && type <= 4) || type == 21) return; // points and lines
-        if (!is_tet && !is_triangle && !is_quad && type != 7)
-            source_.fail(place, fmt::format("its type is {}, which is not a tet", type), split_into_tets);
-        const std::size_t needed = is_triangle ? 3 : is_tet || is_quad ? 4 : corners.size();
-        if (corners.size() < needed) source_.fail(place, "it has too few corners for its type");
-        corners.resize(needed);
-        if (is_tet)
-            source_.add_tet(corners, source_.vertex_count(),
-                            {static_cast<std::int64_t>(index), regions_.empty() ? 0 : regions_[index]}, place);
-        else
-            source_.add_face(corners, source_.vertex_count(), place);
+        add_vtk_cell(source_, types_[index], cells_[index],
+                     {static_cast<std::int64_t>(index), regions_.empty() ? 0 : regions_[index]},
+                     fmt::format("cell {} (line {})", index, lines_[index]));
     }
 
     MeshSource& source_;
@@ -188,7 +160,7 @@ private:
     std::vector<std::size_t> lines_; ///< of the cells
     std::vector<std::int64_t> types_, regions_;
     bool is_of_cells_ = false;
-    std::size_t rank_ = region_names.size(); ///< of the array that regions are from
+    std::size_t rank_ = no_region_array; ///< of the array that regions are from
 };
 
 } // namespace

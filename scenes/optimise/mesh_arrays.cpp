@@ -82,11 +82,11 @@ double face_area(const MeshArrays& arrays, std::uint32_t tet, std::uint32_t face
 
 } // namespace
 
-MeshArrays arrays_of(const TetMesh& mesh)
+MeshArrays arrays_of(const TetMesh& mesh, bool all)
 {
     MeshArrays arrays;
     arrays.tets = mesh.tets;
-    arrays.states.assign(mesh.tets.size(), TetState::hidden);
+    arrays.states.assign(mesh.tets.size(), all ? TetState::reached : TetState::hidden);
     arrays.tet_changed.assign(mesh.tets.size(), 1);
     arrays.points.reserve(mesh.vertices.size());
     for (const Float3 vertex : mesh.vertices)
@@ -94,7 +94,7 @@ MeshArrays arrays_of(const TetMesh& mesh)
     arrays.kinds.assign(mesh.vertices.size(), VertexKind::held);
     arrays.box_sides.assign(mesh.vertices.size(), 0);
     arrays.vertex_changed.assign(mesh.vertices.size(), 1);
-    find_reached(arrays);
+    if (!all) find_reached(arrays);
     find_box_sides(arrays);
     find_kinds(arrays);
     return arrays;

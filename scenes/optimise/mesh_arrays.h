@@ -18,7 +18,8 @@ inline constexpr BoxSides all_box_sides = 0x3F;
     return (sides >> (2 * axis) & 3u) != 0;
 }
 
-/// reached: a chain of free faces leads from the domain's boundary to the tet, so that rays from outside may reach it.
+/// reached: a chain of free faces leads from the domain's boundary to the tet, so that rays from outside may reach it;
+/// or all tets are to be changed.
 enum class TetState : std::uint8_t { unused, hidden, reached };
 
 /// free: the vertex is on no occlusive face, its tets are reached, it is not a corner of the domain, and its boundary
@@ -37,8 +38,8 @@ struct MeshArrays {
     std::vector<std::uint32_t> vertex_changed;
 };
 
-/// mesh: sound (find_defect and find_gap find nothing).
-[[nodiscard]] MeshArrays arrays_of(const TetMesh& mesh);
+/// mesh: sound (find_defect and find_gap find nothing). all: whether the tets inside closed objects count as reached.
+[[nodiscard]] MeshArrays arrays_of(const TetMesh& mesh, bool all = false);
 
 /// The mesh without unused tets and vertices; the others keep their order.
 [[nodiscard]] TetMesh mesh_of(const MeshArrays& arrays);

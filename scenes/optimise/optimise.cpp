@@ -73,8 +73,8 @@ constexpr double share_of_regions = 0.7; // of a round's time; the rest is for w
 class Optimiser {
 public:
     Optimiser(const TetMesh& mesh, const OptimiserLimits& limits, const Progress& progress)
-        : limits_(limits), effort_(effort_of(limits)), progress_(progress), given_(mesh), mesh_(arrays_of(mesh)),
-          per_area_(2 / boundary_area(mesh_)), least_(negligible / per_area_)
+        : limits_(limits), effort_(effort_of(limits)), progress_(progress), given_(mesh),
+          mesh_(arrays_of(mesh, limits.closed_too)), per_area_(2 / boundary_area(mesh_)), least_(negligible / per_area_)
     {
         report_.operations = {{{"edges removed"}, {"faces removed"}, {"moves"}, {"collapses"}, {"insertions"}}};
         report_.cost_before = cost_ = free_area(mesh_) * per_area_;

@@ -36,7 +36,8 @@ struct OptimiserLimits {
     const std::atomic<bool>* stop = nullptr; ///< it ends after the current operation where this becomes true
     int threads = 0;                         ///< 0: as many as OpenMP has. The result does not depend on it
     std::size_t tets_per_region = 12288; ///< at most (docs/spec/rays-tets.md, In parallel); the result depends on it
-    bool several_pieces = false;         ///< of the mesh (count_pieces()): then vertices are inserted with effort 2 too
+    bool several_pieces = false;         ///< of the mesh, or regions: then vertices are inserted with effort 2 too
+    bool closed_too = false;             ///< whether the tets inside closed objects are changed, and cost, too
 };
 
 /// What an operation did.
@@ -48,7 +49,8 @@ struct OperationCount {
 };
 
 /// Costs are the expected number of free faces that a uniform line crosses outside the objects, as if they let it
-/// through: 2 (sum of the areas) / (area of the domain's boundary) (docs/spec/rays-tets.md).
+/// through: 2 (sum of the areas) / (area of the domain's boundary) (docs/spec/rays-tets.md). With closed_too: inside
+/// them too.
 struct OptimiserReport {
     double cost_before = 0, cost_after = 0;
     std::array<OperationCount, 5> operations; ///< edges removed, faces removed, vertices moved, collapsed, inserted
@@ -63,11 +65,11 @@ struct OptimisedTets {
 };
 
 /// Changes the tets that rays from outside reach so that these cross fewer faces: edges and faces are removed, vertices
-/// moved, collapsed and inserted, each only where cost falls. Occlusive faces, the region of the domain and the tets
-/// inside closed objects stay; the sides of a box get other boundary faces. The same bits on every machine and for any
-/// number of threads, unless it ends early; what it has is sound then too. Memory linear; time n log n per round.
-/// mesh: sound (find_defect and find_gap find nothing); so is the result. progress: called by one thread at a time, not
-/// always the same.
+/// moved, collapsed and inserted, each only where cost falls. Occlusive faces, the region of the domain and, without
+/// closed_too, the tets inside closed objects stay; the sides of a box get other boundary faces. The same bits on every
+/// machine and for any number of threads, unless it ends early; what it has is sound then too. Memory linear; time n
+/// log n per round. mesh: sound (find_defect and find_gap find nothing); so is the result. progress: called by one
+/// thread at a time, not always the same.
 [[nodiscard]] OptimisedTets optimise(const TetMesh& mesh, const OptimiserLimits& limits, const Progress& progress);
 
 } // namespace tetrace

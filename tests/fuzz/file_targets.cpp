@@ -24,7 +24,7 @@ void read_as(std::string_view bytes)
 }
 
 constexpr const char *ply = "mesh.ply", *obj = "mesh.obj", *off = "mesh.off", *stl = "mesh.stl", *gltf = "mesh.glb",
-                     *medit = "mesh.mesh", *gmsh = "mesh.msh", *vtk = "mesh.vtk";
+                     *medit = "mesh.mesh", *gmsh = "mesh.msh", *vtk = "mesh.vtk", *vtu = "mesh.vtu";
 
 // The places of the .tet format (scenes/scene_file.cpp): a header of 32 bytes, 7 entries of 48, a checksum.
 constexpr std::size_t header_bytes = 32, entry_bytes = 48, sections = 7;
@@ -84,7 +84,7 @@ void read_archive(std::string_view bytes)
         may_refuse([&] { (void)read_archive_member(file.path(), member, 1 << 20); });
 }
 
-constexpr std::array<Target, 10> targets = {{{"ply", read_as<ply>},
+constexpr std::array<Target, 11> targets = {{{"ply", read_as<ply>},
                                              {"obj", read_as<obj>},
                                              {"off", read_as<off>},
                                              {"stl", read_as<stl>},
@@ -92,6 +92,7 @@ constexpr std::array<Target, 10> targets = {{{"ply", read_as<ply>},
                                              {"medit", read_as<medit>},
                                              {"gmsh", read_as<gmsh>},
                                              {"vtk", read_as<vtk>},
+                                             {"vtu", read_as<vtu>},
                                              {"tet", read_tet},
                                              {"archive", read_archive}}};
 

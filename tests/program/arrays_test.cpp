@@ -103,6 +103,35 @@ TEST_F(Arrays, of_own_tets_have_the_users_numbers_and_sums_that_are_those_of_the
     EXPECT_GT(hit, 50u);
 }
 
+TEST_F(Arrays, of_tets_for_rays_in_a_files_regions_have_the_same_sum_in_each_region)
+{
+    ASSERT_EQ(run("build --scene lattice:6 --size 16 --views 0 --out grid.mesh").code, 0);
+    std::map<std::string, std::map<std::int64_t, std::uint64_t>> sums;
+    std::map<std::string, std::size_t> tets;
+    for (const std::string kind : {"cdt", "rays"}) {
+        const Ended ended =
+            run("check --scene grid.mesh --task tally --layout half32 --rays random --size 32 --views 0 "
+                "--backend openmp --out-arrays arrays --tets " +
+                kind);
+        ASSERT_EQ(ended.code, 0) << ended.errors;
+        EXPECT_EQ(contains(ended.errors, "so a tally is by region"), kind == "rays") << ended.errors;
+        const Records sum = records("tally-project-half32-grid-random-math-exact-api-openmp-tets");
+        const auto regions = sum.column<std::int64_t>("region"), numbers = sum.column<std::int64_t>("number");
+        const auto units = sum.column<std::uint64_t>("units");
+        tets[kind] = units.size();
+        EXPECT_EQ(numbers[0], kind == "rays" ? -1 : 1);
+        for (std::size_t i = 0; i < units.size(); ++i)
+            sums[kind][regions[i]] += units[i];
+    }
+    EXPECT_LT(tets["rays"], tets["cdt"]);
+    ASSERT_GT(sums["cdt"].size(), 3u);
+    EXPECT_EQ(sums["rays"].size(), sums["cdt"].size());
+    for (const auto& [region, units] : sums["cdt"])
+        EXPECT_EQ(region < 0 ? units : sums["rays"][region], units) << "places on faces between regions are the same";
+    const Ended usual = run("build --scene grid.mesh --size 16 --views 0");
+    EXPECT_TRUE(contains(usual.out, "cdt")) << "a file's tets are data: " << usual.out;
+}
+
 TEST_F(Arrays, are_refused_before_the_run_if_they_cannot_be_written_or_would_not_be_whole)
 {
     write_file(folder_ / "taken", "");
@@ -118,13 +147,13 @@ TEST_F(Arrays, are_refused_before_the_run_if_they_cannot_be_written_or_would_not
     }
 }
 
-TEST_F(Arrays, pictures_of_crossings_depth_and_light_are_drawn_for_each_kind_of_tets)
+TEST_F(Arrays, pictures_of_crossings_depth_light_and_a_tally_are_drawn_for_each_kind_of_tets)
 {
     const Ended ended = run("render --scene cubes --resolution 6 --size 64 --views 0 --picture "
-                            "steps,crossings,depth,light --out a.ppm");
+                            "steps,crossings,depth,light,tally --rays diffuse --out a.ppm");
     ASSERT_EQ(ended.code, 0) << ended.errors;
     std::map<std::string, std::string> pictures;
-    for (const std::string kind : {"steps", "crossings", "depth", "light"})
+    for (const std::string kind : {"steps", "crossings", "depth", "light", "tally"})
         pictures[kind] = file(("a-cubes-0-" + kind + ".ppm").c_str());
     for (const auto& [a, bytes] : pictures) {
         EXPECT_TRUE(bytes.starts_with("P6")) << a;
@@ -134,4 +163,5 @@ TEST_F(Arrays, pictures_of_crossings_depth_and_light_are_drawn_for_each_kind_of_
     const Ended bvh =
         run("render --scene cubes --resolution 6 --size 8 --views 0 --layout bvh2 --picture light --out b.ppm");
     EXPECT_EQ(bvh.code, 2) << bvh.errors;
+    EXPECT_EQ(run("render --scene cubes --picture steps --rays random").code, 2) << "only a tally has other rays";
 }

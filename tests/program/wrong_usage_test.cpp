@@ -59,7 +59,8 @@ constexpr Wrong wrong_usages[] = {
     {"bench --tile 4x8", 2, "--tile: '4x8' is not accepted; did you mean 8x8? Accepted: 8x4 or 8x8"},
     {"bench --packet-lanes 5", 2, "--packet-lanes: '5' is not accepted; accepted: 4, 8 or 16"},
     {"render --picture step", 2,
-     "--picture: 'step' is not accepted; did you mean steps? Accepted: normals, steps, crossings, depth or light"},
+     "--picture: 'step' is not accepted; did you mean steps? Accepted: normals, steps, crossings, depth, light or "
+     "tally"},
     {"reproduce table7", 2, "reproduce: 'table7' is not accepted; accepted: table3, table4, "},
     {"reproduce --builds theirs", 2, "--builds: 'theirs' is not accepted; accepted: ours, paper or rays"},
     // numbers

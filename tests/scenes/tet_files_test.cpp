@@ -6,11 +6,13 @@
 #include "scenes/scene_file.h"
 #include "tests/scenes/mesh_samples.h"
 #include "tests/support/builder_meshes.h"
+#include "tests/support/sound_tets.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <numeric>
 #include <set>
 #include <sstream>
@@ -104,10 +106,12 @@ std::string medit(const std::string& vertices, const std::string& tets)
 class TetFiles : public Builder {
 protected:
     /// What the builder makes of a file, with switches that leave the hull whole.
-    [[nodiscard]] Scene build(const std::filesystem::path& mesh) const
+    [[nodiscard]] Scene build(const std::filesystem::path& mesh, bool for_rays = false) const
     {
         BuilderOptions options;
         options.mesh = mesh;
+        options.tets = for_rays ? TetsKind::rays : TetsKind::cdt;
+        options.optimise_own = for_rays;
         options.divisions = 2;
         options.switches = "pY";
         const BuilderTalk silent{[](const std::string&) {}, [](const std::string&) {}};
@@ -294,4 +298,59 @@ TEST_F(TetFiles, are_in_the_scene_unchanged_and_come_back_from_each_format)
             ASSERT_EQ(back.source_tets[i].region, i < given.tets.size() ? given.source_tets[i].region : -2) << name;
         }
     }
+}
+
+TEST_F(TetFiles, are_optimised_within_their_regions_if_that_is_asked_for)
+{
+    // Cubes of six tets in two regions, with a hole and a cavity.
+    export_tets(make_cubes(6), folder_ / "cubes.mesh");
+    const MeshSoup all = read_mesh(folder_ / "cubes.mesh");
+    std::string vertices, tets;
+    for (const Float3 v : all.mesh.vertices)
+        vertices += fmt::format("{} {} {} 0\n", v.x, v.y, v.z);
+    for (std::size_t i = 0; i < all.tets.size(); ++i) {
+        const auto& [a, b, c, d] = all.tets[i];
+        const std::size_t cube = i / 6;
+        if (cube == 2 + 6 * 2 + 36 * 2 || cube == 2) continue;
+        tets += fmt::format("{} {} {} {} {}\n", a + 1, b + 1, c + 1, d + 1, cube % 6 < 3 ? -4 : 5);
+    }
+    const auto file = write("some.mesh", medit(vertices, tets));
+    const Scene own = build(file), rays = build(file, true);
+    EXPECT_EQ(own.build.optimised.tets, TetsKind::cdt);
+    ASSERT_EQ(rays.build.optimised.tets, TetsKind::rays) << rays.build.optimised.reason;
+    EXPECT_EQ(rays.mesh, own.mesh);
+    expect_same_domain(rays.tets, own);
+    EXPECT_LT(rays.build.optimised.cost_after, 0.9 * rays.build.optimised.cost_before);
+    EXPECT_NE(rays.source_tets.size(), own.source_tets.size());
+    EXPECT_EQ(numbers_of(own).front(), 1);
+    EXPECT_EQ(numbers_of(rays), std::vector<std::int64_t>(rays.tets.tets.size(), -1));
+
+    const auto volumes = [](const Scene& scene) {
+        std::map<std::int64_t, double> sums;
+        const std::vector<double> each = volumes_of(scene);
+        const std::vector<std::int64_t> regions = regions_of(scene);
+        for (std::size_t i = 0; i < each.size(); ++i)
+            sums[regions[i]] += each[i];
+        return sums;
+    };
+    const auto before = volumes(own), after = volumes(rays);
+    ASSERT_EQ(before.size(), 3u);
+    ASSERT_EQ(after.size(), 3u);
+    for (const auto& [region, volume] : before)
+        EXPECT_NEAR(after.at(region), volume, 1e-12) << region;
+    const std::vector<std::int64_t> regions = regions_of(rays);
+    for (std::size_t i = 0; i < regions.size(); ++i)
+        for (std::size_t face = 0; face < 4; ++face) {
+            const Tet& tet = rays.tets.tets[i];
+            const std::uint32_t across = tet.neighbours[face] == NO_HALF_FACE ? static_cast<std::uint32_t>(i)
+                                                                              : half_face_tet(tet.neighbours[face]);
+            ASSERT_EQ(regions[across] == regions[i], tet.faces[face] == FREE_FACE);
+        }
+    export_tets(rays, folder_ / "rays.vtu");
+    const std::string text = read_text(folder_ / "rays.vtu"),
+                      head = "Name=\"cost\" NumberOfComponents=\"1\" format=\"ascii\">";
+    ASSERT_NE(text.find(head), std::string::npos);
+    std::istringstream costs(text.substr(text.find(head) + head.size()));
+    EXPECT_NEAR(std::accumulate(std::istream_iterator<double>(costs), {}, 0.0), rays.build.optimised.cost_after, 1e-9)
+        << "inside the regions too";
 }
