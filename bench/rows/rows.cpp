@@ -252,9 +252,9 @@ void require_named_devices(const Options& options, const std::vector<Backend*>& 
 }
 
 constexpr const char* crossing_rule = "; rows of --task segments, tally and absorb are of maria and project on tets "
-                                      "that name their corners, of segments also of plane and "
-                                      "plucker on tet80, with schedule tiles, math mode exact, and rays of kinds "
-                                      "primary, diffuse and random";
+                                      "that name their corners, of segments also of plane and plucker, and on openmp "
+                                      "of plucker64 and barycentric, on tet80, with schedule tiles, math mode exact, "
+                                      "and rays of kinds primary, diffuse and random";
 
 /// The reasons of the backends asked for, to explain an empty selection.
 std::string reasons(const Options& options)
@@ -357,8 +357,10 @@ std::string row_name(const RowKey& key)
 
 bool is_method_of(Structure structure, Method method)
 {
-    return std::ranges::any_of(all_kernels(), [&](const KernelId& kernel) {
-        return kernel.structure == structure && kernel.method == method;
+    return std::ranges::any_of(values_of<Task>(), [&](Task task) {
+        return std::ranges::any_of(kernels_of(task), [&](const KernelId& kernel) {
+            return kernel.structure == structure && kernel.method == method;
+        });
     });
 }
 

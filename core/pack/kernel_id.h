@@ -150,6 +150,7 @@ struct MethodTraits {
     std::string_view name;
     int year;        ///< of its first source; 0 for BVHs
     double vertices; ///< that a step loads, on average
+    bool has_doubles = false; ///< computes in double precision, which openmp alone has
 };
 [[nodiscard]] const MethodTraits& traits_of(Method method);
 

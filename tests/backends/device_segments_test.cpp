@@ -30,6 +30,7 @@ TEST_P(DeviceSegments, have_openmps_bits_for_each_method_and_layout)
     std::vector<KernelId> kernels = kernels_of(Task::segments);
     std::ranges::copy(kernels_of(Task::absorb), std::back_inserter(kernels));
     for (const KernelId& kernel : kernels) {
+        if (traits_of(kernel.method).has_doubles) continue; // openmp's alone
         if (kernel.layout == Layout::tet96) continue; // the text of tet80's kernels; compiling each takes a second
         const CrossedScene tets(cubes.scene, kernel.method, kernel.layout, kernel.task);
         for (const std::size_t device : usable) {
