@@ -221,8 +221,9 @@ std::vector<OptionRow> row_options()
          measuring | bit(Verb::trace) | bit(Verb::dump) | bit(Verb::page), true, append("--rays", &Options::rays),
          usual_for(~(measuring | bit(Verb::dump)), "kind of rays: {}")},
         {"Rows", "--ray-order", "ORDER",
-         "Order of the rays of all kinds except primary: 'tiles', in the order of their pixels; 'morton', sorted by "
-         "origin and direction; 'shuffled'. Each is a separate row. Default: tiles.",
+         "Order of the rays of all kinds except primary, and of primary rays in tasks segments, tally and absorb: "
+         "'tiles', in the order of their pixels; 'morton', sorted by origin and direction; 'shuffled'. Each is a "
+         "separate row. Default: tiles.",
          measuring | bit(Verb::trace) | bit(Verb::dump), true, append("--ray-order", &Options::ray_orders)},
         {"Rows", "--math", "MODE",
          "'exact': no contraction to FMAs, the same bits everywhere; 'fast': the compiler may contract. Embree has "
