@@ -168,7 +168,8 @@ std::vector<OptionRow> row_options()
          selecting & ~bit(Verb::trace), true, append("--structure", &Options::structures)},
         {"Rows", "--method", "NAME",
          "Keep the rows of this method: " + names_of(&KernelId::method, is_of<Structure::cdt>) +
-             " (exit-face searches of the cdt), of task segments also plucker64 and barycentric, " + names_of(&KernelId::method, is_of<Structure::bvh>) +
+             " (exit-face searches of the cdt), of task segments also plucker64 and barycentric, " +
+             names_of(&KernelId::method, is_of<Structure::bvh>) +
              " (how many rays Embree's BVHs get at once: one, a packet, or a stream of packets, which only Embree 3 "
              "has; other BVHs have only single), or 'all'. Default: maria, project on half32 and tet64, and the "
              "methods of the BVHs if these are kept. Default for 'reproduce': all; table6 compares maria with BVHs, "

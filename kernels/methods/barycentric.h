@@ -1,3 +1,5 @@
+// methods/: the exit-face searches, one file each, and what several of them share.
+//
 // Method barycentric: exit face by the point at which the ray meets each face's plane, in double: the face that has the
 // point, by its barycentric coordinates and a tolerance; if none has it, the face that the ray approaches most steeply.
 // Sources of the rule, not of the text: PUMI-PIC (https://github.com/SCOREC/pumi-pic, c09ad045:

@@ -4,8 +4,8 @@
 //
 // Each ray: the answer of the kernel is that of the walk that its noting build notes; it is not lost; each tet is a
 // neighbour of the one before, and none comes twice; a line from outside begins and any ray ends at the boundary of the
-// domain; no length is negative, and the lengths add up to the place of the end less that of the beginning, as integers.
-// One batch in TETRACE_HARD_SHARE, and the first, is also judged by the oracle (docs/spec/volume.md, S7).
+// domain; no length is negative, and the lengths add up to the place of the end less that of the beginning, as
+// integers. One batch in TETRACE_HARD_SHARE, and the first, is also judged by the oracle (docs/spec/volume.md, S7).
 #include "core/base/stopwatch.h"
 #include "scenes/export_tets.h"
 #include "scenes/load.h"
@@ -134,10 +134,11 @@ void expect_no_flaw(const std::string& name, const Scene& scene)
     const std::uint64_t first = number_from("TETRACE_HARD_FIRST", 0);
     Stopwatch watch;
     const Campaign all = run_campaign(scene, first, count);
-    fmt::print("{}: rays {} to {}, {} cross {} tets, {} faces reversed, {} flawed; of {} judged by the oracle {} agree, "
-               "{} ties, {} wrong, {} lost; {:.0f} s\n",
-               name, first, first + all.rays - 1, all.crossing, all.tets, all.reversed, all.flawed, all.judged.rays,
-               all.judged.agreed, all.judged.ties, all.judged.wrong, all.judged.lost, watch.seconds());
+    fmt::print(
+        "{}: rays {} to {}, {} cross {} tets, {} faces reversed, {} flawed; of {} judged by the oracle {} agree, "
+        "{} ties, {} wrong, {} lost; {:.0f} s\n",
+        name, first, first + all.rays - 1, all.crossing, all.tets, all.reversed, all.flawed, all.judged.rays,
+        all.judged.agreed, all.judged.ties, all.judged.wrong, all.judged.lost, watch.seconds());
     std::fflush(stdout);
     EXPECT_EQ(all.flawed + all.judged.wrong + all.judged.lost, 0u) << name;
     EXPECT_GT(all.crossing, all.rays / 2) << name;
