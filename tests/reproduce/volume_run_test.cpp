@@ -15,16 +15,17 @@ TEST_F(VolumeRun, compares_bits_and_sums_counts_lost_rays_and_tests_uniform_line
     ASSERT_EQ(ended.code, 0) << ended.errors;
     const auto page = result("page.json");
     const auto& volume = of_id(page.at("tables"), "volume");
-    ASSERT_EQ(volume.at("rows").size(), 5u + 3 + 3) << "segments; tally and absorb";
-    EXPECT_EQ(page.at("rows").size(), 2 * volume.at("rows").size());
+    ASSERT_EQ(volume.at("rows").size(), 7u + 3 + 3) << "segments; tally and absorb";
+    EXPECT_EQ(page.at("rows").size(), 2 * volume.at("rows").size() - 2) << "two methods in double are openmp's alone";
     const auto number = [](const nlohmann::json& row, const char* key) {
         return row.at(key).at("value").get<double>();
     };
     for (const auto& row : volume.at("rows")) {
-        EXPECT_EQ(row.at("same"), "2 of 2") << row;
+        const std::string name = row.at("row");
+        const bool is_in_double = contains(name, "plucker64") || contains(name, "barycentric");
+        EXPECT_EQ(row.at("same"), is_in_double ? "1 of 1" : "2 of 2") << row;
         EXPECT_EQ(number(row, "rays"), 2 * 64 * 64) << row;
         EXPECT_GT(number(row, "mrays_per_s_openmp"), 0) << row;
-        const std::string name = row.at("row");
         EXPECT_EQ(row.contains("sums"), name.starts_with("tally")) << row;
         EXPECT_EQ(row.value("sums", "equal"), "equal") << row;
         EXPECT_EQ(number(row, "wrong") + number(row, "lost"), 0) << row;
