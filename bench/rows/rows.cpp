@@ -268,13 +268,19 @@ std::string reasons(const Options& options)
     return text;
 }
 
+bool asks_to_cross(const Options& options)
+{
+    return std::ranges::any_of(options.tasks, crosses) ||
+           std::ranges::any_of(options.methods, [](Method method) { return traits_of(method).has_doubles; });
+}
+
 [[noreturn]] void reject_selection(const Options& options, const std::vector<RowKey>& unfiltered)
 {
     if (unfiltered.empty())
         throw Error(ErrorKind::usage,
                     "no row has this combination of --structure, --method, --layout, --task, --rays, --backend, "
                     "--device, --schedule and --math" +
-                        std::string(std::ranges::any_of(options.tasks, crosses) ? crossing_rule : "") +
+                        std::string(asks_to_cross(options) ? crossing_rule : "") +
                         reasons(options) +
                         fmt::format("\n'tetrace {} --list' prints the rows of the defaults",
                                     options.verb == Verb::check ? "check" : "bench"));
