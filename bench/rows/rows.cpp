@@ -280,8 +280,7 @@ bool asks_to_cross(const Options& options)
         throw Error(ErrorKind::usage,
                     "no row has this combination of --structure, --method, --layout, --task, --rays, --backend, "
                     "--device, --schedule and --math" +
-                        std::string(asks_to_cross(options) ? crossing_rule : "") +
-                        reasons(options) +
+                        std::string(asks_to_cross(options) ? crossing_rule : "") + reasons(options) +
                         fmt::format("\n'tetrace {} --list' prints the rows of the defaults",
                                     options.verb == Verb::check ? "check" : "bench"));
     std::string text = fmt::format("--filter '{:.200}' matches none of the {} rows selected otherwise:", options.filter,

@@ -258,7 +258,9 @@ TEST(Rows, methods_in_double_have_task_segments_alone)
     EXPECT_EQ(names({"check", "--task", "segments", "--method", "plucker64,barycentric"}, {"a"}),
               (std::vector<std::string>{"segments/plucker64/tet80/a/primary/math:exact/api:openmp",
                                         "segments/barycentric/tet80/a/primary/math:exact/api:openmp"}));
-    EXPECT_TRUE(contains(error_of([] { (void)names({"bench", "--method", "plucker64"}, {"a"}); }),
+    EXPECT_TRUE(contains(error_of([] {
+                             (void)names({"bench", "--method", "plucker64"}, {"a"});
+                         }),
                          "and on openmp of plucker64 and barycentric"));
 }
 
