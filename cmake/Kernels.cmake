@@ -11,13 +11,21 @@ if(NOT TETRACE_COMPILES STREQUAL "all")
 endif()
 
 # TETRACE_LAYOUTS and TETRACE_KERNELS, as structure/method/layout, are those of ours in kernels/kernel_list.inc, in its
-# order; every backend compiles them in each of TETRACE_MATH_MODES. Also set: TETRACE_FAMILY_<layout> and
-# TETRACE_TASKS_<method>_<layout>; TETRACE_NATIVE_KERNELS are those with schedule native.
+# order; every backend compiles them in each of TETRACE_MATH_MODES. TETRACE_DOUBLE_KERNELS compute in double precision:
+# openmp alone compiles them, in exact mode. Also set: TETRACE_FAMILY_<layout> and TETRACE_TASKS_<method>_<layout>;
+# TETRACE_NATIVE_KERNELS are those with schedule native.
 set(tetrace_kernel_list ${PROJECT_SOURCE_DIR}/kernels/kernel_list.inc)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${tetrace_kernel_list})
 set(TETRACE_LAYOUTS "")
 set(TETRACE_KERNELS "")
 set(TETRACE_NATIVE_KERNELS "")
+set(TETRACE_DOUBLE_KERNELS "")
+file(STRINGS ${tetrace_kernel_list} rows REGEX "^METHOD.*, doubles[)]")
+set(double_methods "")
+foreach(row IN LISTS rows)
+  string(REGEX MATCH "^METHOD.([a-z0-9]+)," ignored ${row})
+  list(APPEND double_methods ${CMAKE_MATCH_1})
+endforeach()
 file(STRINGS ${tetrace_kernel_list} rows REGEX "^LAYOUT")
 foreach(row IN LISTS rows)
   string(REGEX MATCH "^LAYOUT.([a-z0-9]+), ([a-z]+)," ignored ${row})
@@ -42,6 +50,10 @@ foreach(row IN LISTS rows)
   if(layout IN_LIST compiled AND (TETRACE_COMPILES STREQUAL "all" OR row MATCHES "by_default"))
     set(TETRACE_TASKS_${method}_${layout} ${tasks})
     string(REPLACE compact cdt structure ${TETRACE_FAMILY_${layout}}) # compact layouts are the CDT's too
+    if(method IN_LIST double_methods)
+      list(APPEND TETRACE_DOUBLE_KERNELS ${structure}/${method}/${layout})
+      continue()
+    endif()
     list(APPEND TETRACE_KERNELS ${structure}/${method}/${layout})
     if(row MATCHES "native")
       list(APPEND TETRACE_NATIVE_KERNELS ${structure}/${method}/${layout})

@@ -42,11 +42,24 @@ void add_latency(Figures& figures, const RowRecord& row)
     figures.s_per_mray = line.s_per_unit;
 }
 
+/// A step of a task that crosses tets loads all four vertices, for the method and for the place on the exit face, and
+/// what is across that face. The layouts with records are read as rows of 16 bytes; a row of tet64 has both.
+double bytes_to_cross(Layout layout)
+{
+    if (layout == Layout::tet64) return 4 * 16;
+    if (layout == Layout::half32) return 4 * 16 + 16;
+    return 4 * traits_of(layout).vertex_bytes + traits_of(layout).step_bytes;
+}
+
+constexpr double bytes_of_addition = 8; // a word of a sum is read and written
+
 } // namespace
 
 double bytes_per_step(const KernelId& kernel)
 {
     const LayoutTraits& layout = traits_of(kernel.layout);
+    const TaskTraits& task = traits_of(kernel.task);
+    if (task.crosses) return bytes_to_cross(kernel.layout) + (task.tallies ? bytes_of_addition : 0);
     return traits_of(kernel.method).vertices * layout.vertex_bytes + layout.step_bytes;
 }
 
@@ -82,7 +95,7 @@ std::optional<Figures> figures_of(const RowRecord& row)
     if (totals.hits > 0) figures.mhits_per_s = 1e-6 * static_cast<double>(totals.hits) / seconds;
     if (totals.steps() == 0) return figures;
     figures.msteps_per_s = 1e-6 * static_cast<double>(totals.steps()) / seconds;
-    if (const double bytes = bytes_per_step(row.key.kernel); bytes > 0 && !traits_of(row.key.kernel.task).crosses)
+    if (const double bytes = bytes_per_step(row.key.kernel); bytes > 0)
         figures.gb_per_s = 1e-3 * *figures.msteps_per_s * bytes;
     return figures;
 }

@@ -13,13 +13,14 @@ namespace tetrace {
 
 namespace {
 
-/// The distinct values of one part of all kernels' ids: the accepted values of an option.
+/// The distinct values of one part of all kernels' ids, whatever their tasks: the accepted values of an option.
 template <class T>
 std::vector<T> kernels_have(T KernelId::*member)
 {
     std::vector<T> values;
-    for (const KernelId& kernel : all_kernels())
-        if (std::ranges::find(values, kernel.*member) == values.end()) values.push_back(kernel.*member);
+    for (const Task task : values_of<Task>())
+        for (const KernelId& kernel : kernels_of(task))
+            if (std::ranges::find(values, kernel.*member) == values.end()) values.push_back(kernel.*member);
     return values;
 }
 
@@ -168,7 +169,8 @@ std::vector<OptionRow> row_options()
          selecting & ~bit(Verb::trace), true, append("--structure", &Options::structures)},
         {"Rows", "--method", "NAME",
          "Keep the rows of this method: " + names_of(&KernelId::method, is_of<Structure::cdt>) +
-             " (exit-face searches of the cdt), " + names_of(&KernelId::method, is_of<Structure::bvh>) +
+             " (exit-face searches of the cdt), of task segments also plucker64 and barycentric, " +
+             names_of(&KernelId::method, is_of<Structure::bvh>) +
              " (how many rays Embree's BVHs get at once: one, a packet, or a stream of packets, which only Embree 3 "
              "has; other BVHs have only single), or 'all'. Default: maria, project on half32 and tet64, and the "
              "methods of the BVHs if these are kept. Default for 'reproduce': all; table6 compares maria with BVHs, "
@@ -222,8 +224,9 @@ std::vector<OptionRow> row_options()
          append("--rays", &Options::rays),
          usual_for(~(measuring | bit(Verb::render) | bit(Verb::dump)), "kind of rays: {}")},
         {"Rows", "--ray-order", "ORDER",
-         "Order of the rays of all kinds except primary: 'tiles', in the order of their pixels; 'morton', sorted by "
-         "origin and direction; 'shuffled'. Each is a separate row. Default: tiles.",
+         "Order of the rays of all kinds except primary, and of primary rays in tasks segments, tally and absorb: "
+         "'tiles', in the order of their pixels; 'morton', sorted by origin and direction; 'shuffled'. Each is a "
+         "separate row. Default: tiles.",
          measuring | bit(Verb::trace) | bit(Verb::dump), true, append("--ray-order", &Options::ray_orders)},
         {"Rows", "--math", "MODE",
          "'exact': no contraction to FMAs, the same bits everywhere; 'fast': the compiler may contract. Embree has "

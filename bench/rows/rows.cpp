@@ -252,9 +252,9 @@ void require_named_devices(const Options& options, const std::vector<Backend*>& 
 }
 
 constexpr const char* crossing_rule = "; rows of --task segments, tally and absorb are of maria and project on tets "
-                                      "that name their corners, of segments also of plane and "
-                                      "plucker on tet80, with schedule tiles (project on half32 also packets), "
-                                      "math mode exact, and rays of kinds primary, diffuse and random";
+                                      "that name their corners, of segments also of plane and plucker, and on openmp "
+                                      "of plucker64 and barycentric, on tet80, with schedule tiles (project on half32 "
+                                      "also packets), math mode exact, and rays of kinds primary, diffuse and random";
 
 /// The reasons of the backends asked for, to explain an empty selection.
 std::string reasons(const Options& options)
@@ -268,14 +268,19 @@ std::string reasons(const Options& options)
     return text;
 }
 
+bool asks_to_cross(const Options& options)
+{
+    return std::ranges::any_of(options.tasks, crosses) ||
+           std::ranges::any_of(options.methods, [](Method method) { return traits_of(method).has_doubles; });
+}
+
 [[noreturn]] void reject_selection(const Options& options, const std::vector<RowKey>& unfiltered)
 {
     if (unfiltered.empty())
         throw Error(ErrorKind::usage,
                     "no row has this combination of --structure, --method, --layout, --task, --rays, --backend, "
                     "--device, --schedule and --math" +
-                        std::string(std::ranges::any_of(options.tasks, crosses) ? crossing_rule : "") +
-                        reasons(options) +
+                        std::string(asks_to_cross(options) ? crossing_rule : "") + reasons(options) +
                         fmt::format("\n'tetrace {} --list' prints the rows of the defaults",
                                     options.verb == Verb::check ? "check" : "bench"));
     std::string text = fmt::format("--filter '{:.200}' matches none of the {} rows selected otherwise:", options.filter,
@@ -357,8 +362,10 @@ std::string row_name(const RowKey& key)
 
 bool is_method_of(Structure structure, Method method)
 {
-    return std::ranges::any_of(all_kernels(), [&](const KernelId& kernel) {
-        return kernel.structure == structure && kernel.method == method;
+    return std::ranges::any_of(values_of<Task>(), [&](Task task) {
+        return std::ranges::any_of(kernels_of(task), [&](const KernelId& kernel) {
+            return kernel.structure == structure && kernel.method == method;
+        });
     });
 }
 

@@ -66,7 +66,9 @@ std::vector<VolumeScene> volume_scenes(const Options& options, std::vector<std::
 /// one thread and with all, also in packets.
 Options volume_options(Options options)
 {
-    if (options.methods.empty()) options.methods = {Method::plane, Method::plucker, Method::maria, Method::project};
+    if (options.methods.empty())
+        options.methods = {Method::plane,       Method::plucker, Method::plucker64,
+                           Method::barycentric, Method::maria,   Method::project};
     if (options.layouts.empty()) options.layouts = {Layout::tet80, Layout::half32, Layout::tet64};
     if (options.schedules.empty()) options.schedules = {Schedule::tiles, Schedule::packets};
     const unsigned threads = resolved_threads(options);

@@ -58,42 +58,32 @@ bool has_math(const KernelId& kernel)
     return kernel.math == MathMode::exact || is_common(kernel.schedule);
 }
 
-void add_kernels(std::vector<KernelId>& kernels, Structure structure, bool portable)
+void add_kernels(std::vector<KernelId>& kernels, Task task, Structure structure, bool portable)
 {
     for (const Schedule schedule : values_of<Schedule>())
         for (const MathMode math : {MathMode::exact, MathMode::fast})
             for (const KernelRow& row : kernel_rows()) {
-                const KernelId kernel{structure_of(row.layout), row.method, row.layout, math, schedule};
+                const KernelId kernel{structure_of(row.layout), row.method, row.layout, math, schedule, task};
                 if (kernel.structure == structure && is_portable(kernel) == portable &&
-                    (row.schedules & bit(schedule)) != 0 && has_math(kernel))
+                    (row.schedules & bit(schedule)) != 0 && has_math(kernel) && has_task(kernel))
                     kernels.push_back(kernel);
             }
-}
-
-std::vector<KernelId> make_kernels()
-{
-    std::vector<KernelId> kernels;
-    for (const bool portable : {true, false})
-        for (const Structure structure : {Structure::cdt, Structure::bvh})
-            add_kernels(kernels, structure, portable);
-    return kernels;
 }
 
 } // namespace
 
 const std::vector<KernelId>& all_kernels()
 {
-    static const std::vector<KernelId> kernels = make_kernels();
+    static const std::vector<KernelId> kernels = kernels_of(Task::trace);
     return kernels;
 }
 
 std::vector<KernelId> kernels_of(Task task)
 {
     std::vector<KernelId> kernels;
-    for (KernelId kernel : all_kernels()) {
-        kernel.task = task;
-        if (has_task(kernel)) kernels.push_back(kernel);
-    }
+    for (const bool portable : {true, false})
+        for (const Structure structure : {Structure::cdt, Structure::bvh})
+            add_kernels(kernels, task, structure, portable);
     return kernels;
 }
 
@@ -193,6 +183,7 @@ const TaskTraits& traits_of(Task task)
 
 const MethodTraits& traits_of(Method method)
 {
+    [[maybe_unused]] constexpr bool doubles = true; // the list's word
     switch (method) {
 #define METHOD(name, ...)                                                                                              \
     case Method::name: {                                                                                               \

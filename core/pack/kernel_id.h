@@ -148,8 +148,9 @@ struct TriangleMesh;
 /// The properties of a method, from its row in kernels/kernel_list.inc.
 struct MethodTraits {
     std::string_view name;
-    int year;        ///< of its first source; 0 for BVHs
-    double vertices; ///< that a step loads, on average
+    int year;                 ///< of its first source; 0 for BVHs
+    double vertices;          ///< that a step loads, on average
+    bool has_doubles = false; ///< computes in double precision, which openmp alone has
 };
 [[nodiscard]] const MethodTraits& traits_of(Method method);
 

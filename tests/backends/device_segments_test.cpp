@@ -30,7 +30,7 @@ TEST_P(DeviceSegments, have_openmps_bits_for_each_method_and_layout)
     std::vector<KernelId> kernels = kernels_of(Task::segments);
     std::ranges::copy(kernels_of(Task::absorb), std::back_inserter(kernels));
     for (const KernelId& kernel : kernels) {
-        if (!backend.has_kernel(kernel)) continue;    // packets are openmp's
+        if (!backend.has_kernel(kernel)) continue;    // packets and methods in double are openmp's
         if (kernel.layout == Layout::tet96) continue; // the text of tet80's kernels; compiling each takes a second
         const CrossedScene tets(cubes.scene, kernel.method, kernel.layout, kernel.task);
         for (const std::size_t device : usable) {

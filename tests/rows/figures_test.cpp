@@ -84,6 +84,13 @@ TEST(Figures, bandwidth_is_steps_times_what_a_step_loads)
     EXPECT_DOUBLE_EQ(bytes_per_step({Structure::cdt, Method::project, Layout::tet16}), 32) << "a vertex and a row";
     EXPECT_DOUBLE_EQ(bytes_per_step({Structure::cdt, Method::ms06, Layout::tet80}), 52);
     EXPECT_DOUBLE_EQ(bytes_per_step({Structure::cdt, Method::stp, Layout::tet96}), 64 + 32.0 / 3);
+    const auto crossing = [](Layout layout, Task task) {
+        return bytes_per_step({.method = Method::project, .layout = layout, .task = task});
+    };
+    EXPECT_DOUBLE_EQ(crossing(Layout::tet80, Task::segments), 56) << "four vertices and a face";
+    EXPECT_DOUBLE_EQ(crossing(Layout::half32, Task::segments), 80) << "four vertices and a row of links";
+    EXPECT_DOUBLE_EQ(crossing(Layout::tet64, Task::absorb), 64) << "the tet's line";
+    EXPECT_DOUBLE_EQ(crossing(Layout::tet64, Task::tally), 72) << "and a word that is added to";
     EXPECT_DOUBLE_EQ(figures_of(timed_row(Layout::tet80))->gb_per_s.value(), 3.52);
     EXPECT_DOUBLE_EQ(figures_of(timed_row(Layout::tet96))->gb_per_s.value(), 5.12);
 }

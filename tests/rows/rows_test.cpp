@@ -253,6 +253,17 @@ TEST(Rows, every_method_has_rows_where_all_are_asked_for)
     EXPECT_EQ(names({"check", "--method", "plucker"}, {"a"}).size(), 2u);
 }
 
+TEST(Rows, methods_in_double_have_task_segments_alone)
+{
+    EXPECT_EQ(names({"check", "--task", "segments", "--method", "plucker64,barycentric"}, {"a"}),
+              (std::vector<std::string>{"segments/plucker64/tet80/a/primary/math:exact/api:openmp",
+                                        "segments/barycentric/tet80/a/primary/math:exact/api:openmp"}));
+    EXPECT_TRUE(contains(error_of([] {
+                             (void)names({"bench", "--method", "plucker64"}, {"a"});
+                         }),
+                         "and on openmp of plucker64 and barycentric"));
+}
+
 TEST(Rows, options_select_and_rows_go_scene_after_scene)
 {
     EXPECT_EQ(names({"bench", "--layout", "tet96"}, {"a", "b"}),

@@ -177,9 +177,8 @@ PaperTable volume_table(const std::vector<RowRecord>& rows)
                       {"lost", "lost", "", 0}},
                      {"Random lines that cross the domain. The hash is that of all answers; 'same on' counts the "
                       "devices, and numbers of threads, that have it. Rates are Mrays/s of the device's time. All rays "
-                      "are verified; those of packets are compared with those of single rays. Methods plane and "
-                      "plucker walk by the rules of other programs, and may lose "
-                      "rays.",
+                      "are verified; those of packets are compared with those of single rays. Methods plane, plucker, "
+                      "plucker64 and barycentric walk by the rules of other programs, and may lose rays.",
                       "Methods may go around an edge on different sides where a ray passes it within rounding; so "
                       "their hashes can differ although both are right."}};
     const auto places = places_of(rows);
