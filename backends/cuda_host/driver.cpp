@@ -15,7 +15,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <deque>
-#include <memory>
 #include <string>
 
 namespace tetrace::cuda {
@@ -25,6 +24,7 @@ struct FunctionState {
 };
 struct ModuleState {
     void* library = nullptr; ///< of dlopen(); null: the kernels that the build compiled
+    int file = -1;           ///< of the library: dlopen() takes what has the same name as an open one to be that
     std::deque<FunctionState> functions = {};
 };
 struct StreamState {};
@@ -168,36 +168,34 @@ Result context_set_current(ContextHandle)
     return success;
 }
 
-/// A shared object from its bytes, which end with its table of sections, as compilers write it; null if it is not one.
-void* open_library(const void* image)
+/// A shared object from its bytes, which end with its table of sections, as compilers write it. False if it is not one.
+bool open_library(ModuleState& module, const void* image)
 {
     ElfW(Ehdr) header;
     std::memcpy(&header, image, sizeof header);
     const std::size_t bytes = header.e_shoff + std::size_t{header.e_shnum} * header.e_shentsize;
-    const int file = ::memfd_create("kernel", MFD_CLOEXEC);
-    if (file < 0) return nullptr;
-    const bool is_written = ::write(file, image, bytes) == static_cast<ssize_t>(bytes);
-    const std::string path = "/proc/self/fd/" + std::to_string(file);
-    void* const library = is_written ? ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL) : nullptr;
-    ::close(file);
-    return library;
-}
-
-Result module_load(ModuleHandle* module, const void* image, unsigned, int*, void**)
-{
-    auto made = std::make_unique<ModuleState>();
-    if (std::strncmp(static_cast<const char*>(image), ELFMAG, SELFMAG) == 0) {
-        made->library = open_library(image);
-        if (made->library == nullptr) return error_invalid_image;
-    }
-    *module = made.release();
-    return success;
+    module.file = ::memfd_create("kernel", MFD_CLOEXEC);
+    if (module.file < 0 || ::write(module.file, image, bytes) != static_cast<ssize_t>(bytes)) return false;
+    module.library = ::dlopen(("/proc/self/fd/" + std::to_string(module.file)).c_str(), RTLD_NOW | RTLD_LOCAL);
+    return module.library != nullptr;
 }
 
 Result module_unload(ModuleHandle module)
 {
     if (module->library != nullptr) ::dlclose(module->library);
+    if (module->file >= 0) ::close(module->file);
     delete module;
+    return success;
+}
+
+Result module_load(ModuleHandle* module, const void* image, unsigned, int*, void**)
+{
+    auto* const made = new ModuleState;
+    if (std::strncmp(static_cast<const char*>(image), ELFMAG, SELFMAG) == 0 && !open_library(*made, image)) {
+        module_unload(made);
+        return error_invalid_image;
+    }
+    *module = made;
     return success;
 }
 
