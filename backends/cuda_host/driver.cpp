@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <deque>
+#include <optional>
 #include <string>
 
 namespace tetrace::cuda {
@@ -168,11 +169,19 @@ Result context_set_current(ContextHandle)
     return success;
 }
 
-/// A shared object from its bytes, which end with its table of sections, as compilers write it. False if it is not one.
-bool open_library(ModuleState& module, const void* image)
+/// The header of a shared object; empty for any other image, such as NVIDIA's machine code, which is ELF, too.
+std::optional<ElfW(Ehdr)> library_header(const void* image)
 {
+    if (std::strncmp(static_cast<const char*>(image), ELFMAG, SELFMAG) != 0) return std::nullopt;
     ElfW(Ehdr) header;
     std::memcpy(&header, image, sizeof header);
+    return header.e_machine == EM_CUDA ? std::nullopt : std::optional(header);
+}
+
+/// image: the object's bytes, which end with its table of sections, as compilers write it. False if it cannot be
+/// loaded.
+bool open_library(ModuleState& module, const ElfW(Ehdr) & header, const void* image)
+{
     const std::size_t bytes = header.e_shoff + std::size_t{header.e_shnum} * header.e_shentsize;
     module.file = ::memfd_create("kernel", MFD_CLOEXEC);
     if (module.file < 0 || ::write(module.file, image, bytes) != static_cast<ssize_t>(bytes)) return false;
@@ -191,7 +200,8 @@ Result module_unload(ModuleHandle module)
 Result module_load(ModuleHandle* module, const void* image, unsigned, int*, void**)
 {
     auto* const made = new ModuleState;
-    if (std::strncmp(static_cast<const char*>(image), ELFMAG, SELFMAG) == 0 && !open_library(*made, image)) {
+    const auto header = library_header(image);
+    if (header && !open_library(*made, *header, image)) {
         module_unload(made);
         return error_invalid_image;
     }
