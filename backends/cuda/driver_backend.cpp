@@ -5,6 +5,7 @@
 #include "backends/cuda/program.h"
 #include "backends/cuda/session.h"
 #include "core/base/error.h"
+#include "core/base/files.h"
 #include "core/device/backend.h"
 #include "core/device/session.h"
 #include "core/device/yardstick.h"
@@ -166,7 +167,12 @@ std::unique_ptr<Session> DriverBackend::open(std::size_t device, const KernelId&
     const Found& here = found();
     const PackedScene& packed = packed_scene(*this, device, kernel, scene);
     const Driver& driver = here.driver.driver;
-    return std::make_unique<CudaSession>(driver, ordinal_of(driver, device), here.programs, kernel, packed, options,
+    Programs programs = here.programs;
+    const std::string name = program_of(kernel).name();
+    const std::string given = options.program_file.empty() ? std::string() : required_bytes(options.program_file);
+    const EmbeddedKernel code{name, std::as_bytes(std::span(given))};
+    if (!given.empty()) programs = {.code = std::span(&code, 1), .compiler = "the compiler of a given program"};
+    return std::make_unique<CudaSession>(driver, ordinal_of(driver, device), programs, kernel, packed, options,
                                          tile_height_of(options));
 }
 
@@ -199,8 +205,8 @@ std::vector<std::uint32_t> DriverBackend::run_defect(std::size_t device, std::st
     return results;
 }
 
-CompiledCode DriverBackend::compiled(std::size_t device, const std::optional<KernelId>& kernel,
-                                     bool starts_outside) const
+CompiledCode DriverBackend::compiled(std::size_t device, const std::optional<KernelId>& kernel, bool starts_outside,
+                                     const std::filesystem::path&) const
 {
     const Found& here = require(device);
     const Driver& driver = here.driver.driver;

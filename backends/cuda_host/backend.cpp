@@ -4,7 +4,13 @@
 #include "backends/cuda_host/driver.h"
 #include "core/device/host.h"
 
+#include <cstdlib>
+
 namespace tetrace {
+
+namespace cuda_host_frame {
+std::span<const EmbeddedKernel> embedded_kernels();
+}
 
 namespace {
 
@@ -27,6 +33,23 @@ const std::vector<EmbeddedKernel>& host_images()
     return images;
 }
 
+constexpr std::string_view loaded_text = "\n#include KERNEL_FILE\n";
+
+/// A kernel's text between what calls its entries, and the command that makes a shared object of it.
+KernelFile host_text(const KernelId& kernel, std::string_view text)
+{
+    const std::string name = cuda::program_of(kernel).name();
+    const char* const named = std::getenv("CXX");
+    const std::string compiler = named != nullptr && *named != 0 ? named : "c++";
+    const char* const flags = kernel.math == MathMode::exact ? HOST_FLAGS_EXACT : HOST_FLAGS_FAST;
+    std::string whole(cuda_host_frame::embedded_kernels().front().text());
+    whole.replace(whole.find(loaded_text) + 1, loaded_text.size() - 1, text);
+    return {name + ".cpp", "CUDA C++ with what makes it host C++, for the emulated driver",
+            compiler + " -std=c++20 -O2 " + flags + " -fPIC -shared -w -DKERNEL_NAME=" + name + " -o " + name + ".so " +
+                name + ".cpp",
+            whole};
+}
+
 class CudaHostBackend : public cuda::DriverBackend {
 public:
     CudaHostBackend()
@@ -44,6 +67,12 @@ public:
         if (reason.empty() && kernel.math == MathMode::fast && !host_has_fused_multiply())
             return "math mode fast is compiled for x86-64-v3, which this processor is not; use --math exact";
         return reason;
+    }
+
+    [[nodiscard]] std::vector<KernelFile> kernel_files(const KernelId& kernel) const override
+    {
+        const EmbeddedKernel* const source = find_kernel(cuda::embedded_sources(), cuda::program_of(kernel).source);
+        return source == nullptr ? std::vector<KernelFile>{} : std::vector{host_text(kernel, source->text())};
     }
 };
 

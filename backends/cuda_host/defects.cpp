@@ -1,6 +1,5 @@
 // backends/cuda/defects.cu as host C++.
 #include "backends/cuda_host/kernels.h"
-#include "backends/cuda_host/shim.h"
 #include "kernels/layouts/defect_words.h"
 #include "kernels/layouts/layout.h"
 
@@ -30,14 +29,14 @@ std::uint32_t __activemask()
 namespace tetrace::cuda_host {
 
 #define DEFECT(name)                                                                                                   \
-    void run_run_##name(void** arguments)                                                                              \
+    extern "C" void run_run_##name(const Place& place, void** arguments)                                               \
     {                                                                                                                  \
-        call(run_##name, arguments);                                                                                   \
+        call(run_##name, place, arguments);                                                                            \
     }
 #define GROUP_DEFECT(name)                                                                                             \
-    void run_run_##name(void** arguments)                                                                              \
+    extern "C" void run_run_##name(const Place& place, void** arguments)                                               \
     {                                                                                                                  \
-        if (threadIdx.x == 0u) call(run_##name, arguments);                                                            \
+        if (place.thread.x == 0u) call(run_##name, place, arguments);                                                  \
     }
 #define LANE_DEFECT GROUP_DEFECT
 #define FAR_DEFECT GROUP_DEFECT

@@ -1,10 +1,12 @@
 #include "backends/cuda_host/driver.h"
 
 #include "backends/cuda_host/kernels.h"
-#include "backends/cuda_host/shim.h"
 #include "core/base/control_groups.h"
 
+#include <dlfcn.h>
+#include <link.h>
 #include <omp.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,12 +14,19 @@
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
+#include <deque>
+#include <optional>
+#include <string>
 
 namespace tetrace::cuda {
 struct ContextState {};
-struct ModuleState {};
 struct FunctionState {
     cuda_host::Entry entry;
+};
+struct ModuleState {
+    void* library = nullptr; ///< of dlopen(); null: the kernels that the build compiled
+    int file = -1;           ///< of the library: dlopen() takes what has the same name as an open one to be that
+    std::deque<FunctionState> functions = {};
 };
 struct StreamState {};
 struct EventState {
@@ -26,8 +35,6 @@ struct EventState {
 } // namespace tetrace::cuda
 
 namespace tetrace::cuda_host {
-
-constinit thread_local Dimensions current_thread, current_block, block_size;
 
 namespace {
 
@@ -162,32 +169,63 @@ Result context_set_current(ContextHandle)
     return success;
 }
 
-Result module_load(ModuleHandle* module, const void*, unsigned, int*, void**)
+/// The header of a shared object; empty for any other image, such as NVIDIA's machine code, which is ELF, too.
+std::optional<ElfW(Ehdr)> library_header(const void* image)
 {
-    static ModuleState all;
-    *module = &all;
+    if (std::strncmp(static_cast<const char*>(image), ELFMAG, SELFMAG) != 0) return std::nullopt;
+    ElfW(Ehdr) header;
+    std::memcpy(&header, image, sizeof header);
+    return header.e_machine == EM_CUDA ? std::nullopt : std::optional(header);
+}
+
+/// image: the object's bytes, which end with its table of sections, as compilers write it. False if it cannot be
+/// loaded.
+bool open_library(ModuleState& module, const ElfW(Ehdr) & header, const void* image)
+{
+    const std::size_t bytes = header.e_shoff + std::size_t{header.e_shnum} * header.e_shentsize;
+    module.file = ::memfd_create("kernel", MFD_CLOEXEC);
+    if (module.file < 0 || ::write(module.file, image, bytes) != static_cast<ssize_t>(bytes)) return false;
+    module.library = ::dlopen(("/proc/self/fd/" + std::to_string(module.file)).c_str(), RTLD_NOW | RTLD_LOCAL);
+    return module.library != nullptr;
+}
+
+Result module_unload(ModuleHandle module)
+{
+    if (module->library != nullptr) ::dlclose(module->library);
+    if (module->file >= 0) ::close(module->file);
+    delete module;
     return success;
 }
 
-Result module_unload(ModuleHandle)
+Result module_load(ModuleHandle* module, const void* image, unsigned, int*, void**)
 {
+    auto* const made = new ModuleState;
+    const auto header = library_header(image);
+    if (header && !open_library(*made, *header, image)) {
+        module_unload(made);
+        return error_invalid_image;
+    }
+    *module = made;
     return success;
 }
 
-Result module_function(FunctionHandle* function, ModuleHandle, const char* name)
+/// Null if the module lacks it.
+Entry entry_of(const ModuleState& module, const char* name)
 {
-    static std::vector<FunctionState> functions = [] {
-        std::vector<FunctionState> made;
-        for (const CompiledEntry& compiled : compiled_entries())
-            made.push_back({compiled.entry});
-        return made;
-    }();
+    if (module.library != nullptr)
+        return reinterpret_cast<Entry>(::dlsym(module.library, (std::string("run_") + name).c_str()));
     const auto& entries = compiled_entries();
     const auto found = std::find_if(entries.begin(), entries.end(), [&](const CompiledEntry& compiled) {
         return std::strcmp(compiled.name, name) == 0;
     });
-    if (found == entries.end()) return error_not_found;
-    *function = &functions[static_cast<std::size_t>(found - entries.begin())];
+    return found == entries.end() ? nullptr : found->entry;
+}
+
+Result module_function(FunctionHandle* function, ModuleHandle module, const char* name)
+{
+    const Entry entry = entry_of(*module, name);
+    if (entry == nullptr) return error_not_found;
+    *function = &module->functions.emplace_back(FunctionState{entry});
     return success;
 }
 
@@ -312,14 +350,13 @@ Result event_elapsed(float* milliseconds, EventHandle start, EventHandle end)
 
 // Launches
 
-void run_block(Entry entry, Dimensions block, void** arguments)
+void run_block(Entry entry, std::uint32_t index, Dimensions block, void** arguments)
 {
-    for (std::uint32_t z = 0; z < block.z; ++z)
-        for (std::uint32_t y = 0; y < block.y; ++y)
-            for (std::uint32_t x = 0; x < block.x; ++x) {
-                current_thread = {x, y, z};
-                entry(arguments);
-            }
+    Place place{{}, {index, 0, 0}, block};
+    for (place.thread.z = 0; place.thread.z < block.z; ++place.thread.z)
+        for (place.thread.y = 0; place.thread.y < block.y; ++place.thread.y)
+            for (place.thread.x = 0; place.thread.x < block.x; ++place.thread.x)
+                entry(place, arguments);
 }
 
 void run_grid(Entry entry, std::uint32_t blocks, Dimensions block, void** arguments)
@@ -329,12 +366,9 @@ void run_grid(Entry entry, std::uint32_t blocks, Dimensions block, void** argume
         std::fenv_t environment;
         std::fegetenv(&environment);
         std::fesetenv(FE_DFL_ENV); // other libraries leave their threads flushing denormals
-        block_size = block;
 #pragma omp for schedule(dynamic)
-        for (std::uint32_t index = 0; index < blocks; ++index) {
-            current_block = {index, 0, 0};
-            run_block(entry, block, arguments);
-        }
+        for (std::uint32_t index = 0; index < blocks; ++index)
+            run_block(entry, index, block, arguments);
         std::fesetenv(&environment);
     }
 }

@@ -1,14 +1,21 @@
 #pragma once
 
+#include "backends/cuda_host/shim.h"
+
 #include <cstddef>
 #include <utility>
 #include <vector>
 
 namespace tetrace::cuda_host {
 
-/// An entry point compiled for the host: runs the thread with the calling thread's threadIdx and blockIdx (shim.h).
-/// arguments: the address of each argument, as in a launch.
-using Entry = void (*)(void** arguments);
+/// A thread's place in its launch.
+struct Place {
+    Dimensions thread, block, block_size;
+};
+
+/// An entry point compiled for the host: runs the thread of a place. arguments: the address of each argument, as in a
+/// launch.
+using Entry = void (*)(const Place& place, void** arguments);
 
 struct CompiledEntry {
     const char* name; ///< "trace_tiles_maria_tet80_exact"
@@ -26,8 +33,11 @@ void call(void (*kernel)(Arguments...), void** arguments, std::index_sequence<Po
 }
 
 template <class... Arguments>
-void call(void (*kernel)(Arguments...), [[maybe_unused]] void** arguments)
+void call(void (*kernel)(Arguments...), const Place& place, [[maybe_unused]] void** arguments)
 {
+    current_thread = place.thread;
+    current_block = place.block;
+    block_size = place.block_size;
     call(kernel, arguments, std::index_sequence_for<Arguments...>{});
 }
 

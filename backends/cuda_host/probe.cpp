@@ -1,6 +1,5 @@
 // backends/cuda/probe.cu as host C++: compiled once per math mode (CMakeLists.txt), which is given by KERNEL_NAME.
 #include "backends/cuda_host/kernels.h"
-#include "backends/cuda_host/shim.h"
 #include "kernels/layouts/layout.h"
 
 namespace {
@@ -12,9 +11,9 @@ namespace {
 
 namespace tetrace::cuda_host {
 
-void ENTRY(run_, KERNEL_NAME)(void** arguments)
+extern "C" void ENTRY(run_, KERNEL_NAME)(const Place& place, void** arguments)
 {
-    call(KERNEL_NAME, arguments);
+    call(KERNEL_NAME, place, arguments);
 }
 
 } // namespace tetrace::cuda_host

@@ -36,8 +36,8 @@ struct Dimensions {
     std::uint32_t x = 1, y = 1, z = 1;
 };
 
-// constinit: no wrapper function checks whether they are initialised.
-extern constinit thread_local Dimensions current_thread, current_block, block_size;
+// constinit: no wrapper function checks whether they are initialised. Hidden: a shared object of a kernel has its own.
+[[gnu::visibility("hidden")]] inline constinit thread_local Dimensions current_thread, current_block, block_size;
 
 constexpr std::uint32_t warp_size = 1;
 constexpr std::uint32_t max_block_threads = 1024;

@@ -73,8 +73,8 @@ public:
         return opencl::measure_device(*context(device, options.threads), max_buffer(devices().at(device), options));
     }
 
-    [[nodiscard]] CompiledCode compiled(std::size_t device, const std::optional<KernelId>& kernel,
-                                        bool starts_outside) const override
+    [[nodiscard]] CompiledCode compiled(std::size_t device, const std::optional<KernelId>& kernel, bool starts_outside,
+                                        const std::filesystem::path&) const override
     {
         return opencl::compiled_code(*context(device, 0), kernel, starts_outside);
     }
@@ -97,9 +97,10 @@ public:
     }
     [[nodiscard]] std::optional<LaunchCase> tile_case(const Device& device, const KernelId& kernel,
                                                       const PackedScene& scene, const LaunchParams& launch,
-                                                      std::span<const Quad> rays) const override
+                                                      std::span<const Quad> rays,
+                                                      const std::filesystem::path& program_file) const override
     {
-        return opencl::tile_case(device, kernel, scene, launch, rays);
+        return opencl::tile_case(device, kernel, scene, launch, rays, program_file);
     }
     [[nodiscard]] std::optional<LaunchCase> defect_case(std::string_view name,
                                                         const DefectLaunch& launch) const override

@@ -2,6 +2,7 @@
 
 #include "backends/opencl/kernels.h"
 #include "backends/opencl/probe.h"
+#include "core/base/files.h"
 #include "core/device/scene_buffers.h"
 
 #include <algorithm>
@@ -39,7 +40,7 @@ LaunchCase::Input input(const char* kind, cl_uint argument, const std::string& n
 } // namespace
 
 LaunchCase tile_case(const Device& device, const KernelId& kernel, const PackedScene& scene, const LaunchParams& launch,
-                     std::span<const Quad> rays)
+                     std::span<const Quad> rays, const std::filesystem::path& program_file)
 {
     FoundDevice found;
     found.facts = device;
@@ -49,6 +50,7 @@ LaunchCase tile_case(const Device& device, const KernelId& kernel, const PackedS
     const std::string defines = defines_of(kernel, launch.tile_height, false, starts_outside, found.stack_top);
     LaunchCase made =
         case_of(found, {source_name(kernel), kernel.math, defines}, "run_image", TILE_WIDTH * launch.tile_height);
+    if (!program_file.empty()) made.program.bytes = required_bytes(program_file);
     const std::uint32_t end_tile = launch.first_tile + 1, counter = 0;
     made.inputs = {
         input("value", launch_argument, "launch", "LaunchParams of the program", std::span(&launch, 1)),

@@ -71,9 +71,10 @@ public:
     }
     [[nodiscard]] std::optional<LaunchCase> tile_case(const Device& device, const KernelId& kernel,
                                                       const PackedScene& scene, const LaunchParams& launch,
-                                                      std::span<const Quad> rays) const override
+                                                      std::span<const Quad> rays,
+                                                      const std::filesystem::path& program_file) const override
     {
-        return vulkan::tile_case(device, kernel, scene, launch, rays);
+        return vulkan::tile_case(device, kernel, scene, launch, rays, program_file);
     }
     [[nodiscard]] std::optional<LaunchCase> defect_case(std::string_view name,
                                                         const DefectLaunch& launch) const override
@@ -83,12 +84,12 @@ public:
 
     [[nodiscard]] bool shows_code() const override { return true; }
 
-    [[nodiscard]] CompiledCode compiled(std::size_t device, const std::optional<KernelId>& kernel,
-                                        bool starts_outside) const override
+    [[nodiscard]] CompiledCode compiled(std::size_t device, const std::optional<KernelId>& kernel, bool starts_outside,
+                                        const std::filesystem::path& program_file) const override
     {
         const vulkan::FoundDevice& wanted = found().devices.at(device);
         if (!wanted.facts.usable && !wanted.facts.compile_only) throw Error(ErrorKind::missing, wanted.facts.reason);
-        return vulkan::compiled_code(wanted, kernel, starts_outside);
+        return vulkan::compiled_code(wanted, kernel, starts_outside, program_file);
     }
 
 private:

@@ -4,6 +4,7 @@
 #include "backends/vulkan/instance.h"
 #include "backends/vulkan/kernels.h"
 #include "backends/vulkan/program.h"
+#include "core/base/files.h"
 #include "core/device/launch.h"
 #include "core/device/scene_buffers.h"
 #include "core/device/session.h"
@@ -192,9 +193,13 @@ std::string code_text(const vk::raii::Device& device, const vk::PipelineExecutab
 
 } // namespace
 
-CompiledCode compiled_code(const FoundDevice& found, const std::optional<KernelId>& kernel, bool starts_outside)
+CompiledCode compiled_code(const FoundDevice& found, const std::optional<KernelId>& kernel, bool starts_outside,
+                           const std::filesystem::path& program_file)
 {
-    const ProgramId id = program_of(found, kernel, starts_outside);
+    ProgramId id = program_of(found, kernel, starts_outside);
+    const std::string bytes = program_file.empty() ? std::string() : required_bytes(program_file);
+    const EmbeddedKernel given{id.name, std::as_bytes(std::span(bytes))};
+    if (!bytes.empty()) id.kernels = {&given, 1};
     try {
         const vk::raii::Device& device = device_of(found);
         const auto set_layout = make_set_layout(device, id);

@@ -2,6 +2,8 @@
 
 #include "backends/vulkan/kernels.h"
 #include "backends/vulkan/session.h"
+#include "backends/vulkan/specialized.h"
+#include "core/base/files.h"
 
 #include <array>
 #include <cstring>
@@ -52,7 +54,7 @@ std::string array_place(bool in_texels, const TexelBinding& texels)
 } // namespace
 
 LaunchCase tile_case(const Device& device, const KernelId& kernel, const PackedScene& scene, const LaunchParams& launch,
-                     std::span<const Quad> rays)
+                     std::span<const Quad> rays, const std::filesystem::path& program_file)
 {
     const bool in_texels = device.kind != DeviceKind::gpu;
     LaunchCase made = case_of(embedded_kernels(), shader_name(kernel) + (in_texels ? "_texels" : ""));
@@ -61,6 +63,10 @@ LaunchCase tile_case(const Device& device, const KernelId& kernel, const PackedS
                                                     in_texels ? 0u : STACK_TOP_OF_GPUS, 0u};
     std::array<std::uint32_t, sizeof(LaunchParams) / sizeof(std::uint32_t)> pushed{};
     std::memcpy(pushed.data(), &launch, sizeof(launch));
+    if (!program_file.empty()) made.program.bytes = required_bytes(program_file);
+    const auto words = specialized(std::as_bytes(std::span(made.program.bytes)), constants);
+    made.program.bytes.assign(reinterpret_cast<const char*>(words.data()), words.size() * sizeof(words[0]));
+    made.program.what += " with its constants' values, as the driver gets it";
     made.lines.push_back(fmt::format("CONSTANTS {}", fmt::join(constants, ", ")));
     made.lines.push_back(fmt::format("PUSHED {:#x}", fmt::join(pushed, ", ")));
     const auto buffers = scene_buffers(scene);

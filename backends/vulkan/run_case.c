@@ -16,7 +16,7 @@ static const struct {
     uint32_t binding;
     const char* file;
 } inputs[] = {INPUTS};
-static const uint32_t constants[] = {CONSTANTS}; /* of specialization, by ID */
+static const uint32_t constants[] = {CONSTANTS}; /* of specialization, by ID; a module that has their values ignores them */
 static const uint32_t pushed[] = {PUSHED};
 
 enum { INPUT_COUNT = sizeof(inputs) / sizeof(inputs[0]), CONSTANT_COUNT = sizeof(constants) / sizeof(constants[0]) };

@@ -154,14 +154,13 @@ std::string title_of_tile(const SceneWork& scene, const RowKey& key, const Backe
     return title;
 }
 
-/// In place of the program that of its variant, which has the same answers.
-void change_program(LaunchCase& launch, const Options& options, const std::string& backend, const KernelId& kernel)
+/// The program of the variant of --variant, which has the kernel's answers; empty: none is asked for.
+std::filesystem::path variant_file(const Options& options, const std::string& backend, const KernelId& kernel,
+                                   const WorkFolder& folder)
 {
+    if (options.changes.empty()) return {};
     const VariantProgram variant(backend, kernel);
-    const WorkFolder folder;
-    const std::string text = variant.text().with(variant.text().named(options.changes));
-    launch.program.bytes = required_bytes(variant.write(text, folder.path()));
-    launch.program.what += fmt::format(", with the changes {}", fmt::join(options.changes, ", "));
+    return variant.write(variant.text().with(variant.text().named(options.changes)), folder.path());
 }
 
 DumpedCase tile_case(const Options& options, const Backend& backend)
@@ -185,9 +184,12 @@ DumpedCase tile_case(const Options& options, const Backend& backend)
         launch_params(job, domain_of(packed), tile_height_of(session_options(options)), TetParts{}.log2_bytes);
     const std::uint32_t columns = (job.width + TILE_WIDTH - 1) / TILE_WIDTH;
     launch.first_tile = number / job.width / launch.tile_height * columns + number % job.width / TILE_WIDTH;
-    auto made = backend.tile_case(target, key.kernel, packed, launch, quads_of_case(scene, row));
+    const WorkFolder folder;
+    auto made = backend.tile_case(target, key.kernel, packed, launch, quads_of_case(scene, row),
+                                  variant_file(options, backend.name(), key.kernel, folder));
     if (!made) refuse_case(backend);
-    if (!options.changes.empty()) change_program(*made, options, backend.name(), key.kernel);
+    if (!options.changes.empty())
+        made->program.what += fmt::format(", with the changes {}", fmt::join(options.changes, ", "));
     return files_of_case(*made, output_of_tile(launch, hits), title_of_tile(scene, key, backend, options));
 }
 

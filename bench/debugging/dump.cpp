@@ -6,10 +6,12 @@
 #include "bench/options/option_values.h"
 #include "bench/rows/rows.h"
 #include "bench/terminal/text.h"
+#include "bench/variants/variant_program.h"
 #include "core/base/error.h"
 #include "core/base/printable.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -103,8 +105,18 @@ bool is_kept(const Options& options, const Backend& backend, std::size_t index)
 std::vector<KernelFile> dumped_files(const Options& options, const std::vector<Backend*>& backends)
 {
     const KernelId kernel = one_kernel(options);
-    if (options.backends.front() == browser_api) return page_files(kernel);
+    if (options.backends.front() == browser_api) {
+        if (!options.changes.empty())
+            throw Error(ErrorKind::usage, fmt::format("dump: --variant: {} has no variants", browser_api));
+        return page_files(kernel);
+    }
     const Backend& backend = chosen(options, backends);
+    if (!options.changes.empty()) {
+        const VariantProgram variant(backend.name(), kernel);
+        return {
+            variant.text_file(variant.text().with(variant.text().named(options.changes)),
+                              fmt::format("the kernel's text, with the changes {}", fmt::join(options.changes, ", ")))};
+    }
     std::vector<KernelFile> files = backend.kernel_files(kernel);
     if (files.empty())
         throw Error(
@@ -121,7 +133,7 @@ std::vector<KernelFile> driver_code(const Options& options, const std::vector<Ba
                                     std::vector<std::string>& notes)
 {
     const KernelId kernel = one_kernel(options);
-    if (options.backends.front() == browser_api) return {};
+    if (options.backends.front() == browser_api || !options.changes.empty()) return {};
     const Backend& backend = chosen(options, backends);
     std::vector<KernelFile> files;
     bool has_device = false;
@@ -130,7 +142,7 @@ std::vector<KernelFile> driver_code(const Options& options, const std::vector<Ba
         has_device = true;
         const Device& device = backend.devices()[i];
         try {
-            const CompiledCode code = backend.compiled(i, kernel, true);
+            const CompiledCode code = backend.compiled(i, kernel, true, {});
             if (code.text.empty())
                 notes.push_back(
                     fmt::format("{}: its driver reports statistics of its code, but not the code", device.name));

@@ -49,7 +49,7 @@ void ask(Inspected& row, const std::filesystem::path& code)
 try {
     const Target& target = row.target;
     const CompiledCode compiled =
-        target.backend->compiled(target.device, row.point.kernel, row.point.entry == Entry::outside);
+        target.backend->compiled(target.device, row.point.kernel, row.point.entry == Entry::outside, {});
     take_code(row, compiled);
     if (!code.empty() && !compiled.text.empty())
         write_whole(code / (target.name + code_file_name(row.point)), compiled.text);
@@ -88,7 +88,7 @@ std::vector<Inspected> ask_driver(const Target& target, const std::vector<EntryP
     auto rows = unasked(target, points, "not compiled");
     Inspected nothing;
     try {
-        take_code(nothing, target.backend->compiled(target.device, std::nullopt, true));
+        take_code(nothing, target.backend->compiled(target.device, std::nullopt, true, {}));
     } catch (const Error& error) {
         if (error.kind() == ErrorKind::interrupted) throw;
         rows = unasked(target, points, printable_line(error.what()));

@@ -63,13 +63,14 @@ struct HipCode {
     std::string text, reason;
 };
 
-HipCode compile_hip(const Hipcc& hipcc, const std::string& chip, const cuda::ProgramId& program)
+HipCode compile_hip(const Hipcc& hipcc, const std::string& chip, const cuda::ProgramId& program,
+                    const std::string& text)
 {
     const EmbeddedKernel* const kernel = find_kernel(cuda::embedded_sources(), program.source);
     if (kernel == nullptr) return {{}, "this build lacks the source of " + program.source};
     const WorkFolder folder;
     const fs::path source = folder.path() / "kernel.hip", listing = folder.path() / "kernel.s";
-    std::ofstream(source) << prelude << kernel->text();
+    std::ofstream(source) << prelude << (text.empty() ? kernel->text() : std::string_view(text));
     const bool is_fast = program.math == MathMode::fast;
     const ChildOutcome outcome = run_compiler(
         hipcc.program,
@@ -147,7 +148,7 @@ Hipcc find_hipcc()
 }
 
 std::vector<Inspected> ask_hipcc(const Hipcc& hipcc, const Target& target, const std::vector<EntryPoint>& points,
-                                 const fs::path& code, const PartDone& tell)
+                                 const fs::path& code, const PartDone& tell, const std::string& text)
 {
     if (!hipcc.reason.empty()) return unasked(target, points, hipcc.reason);
     std::map<std::string, HipCode> kernels;
@@ -157,7 +158,7 @@ std::vector<Inspected> ask_hipcc(const Hipcc& hipcc, const Target& target, const
         const cuda::ProgramId program = cuda::program_of(point.kernel);
         auto found = kernels.find(program.name());
         if (found == kernels.end()) {
-            found = kernels.emplace(program.name(), compile_hip(hipcc, chip_of(target), program)).first;
+            found = kernels.emplace(program.name(), compile_hip(hipcc, chip_of(target), program, text)).first;
             if (found->second.reason.find("unsupported HIP gpu architecture") != std::string::npos ||
                 found->second.reason.find("invalid target ID") != std::string::npos)
                 return unasked(

@@ -14,8 +14,6 @@
 
 namespace tetrace {
 
-namespace {
-
 std::vector<EntryPoint> points_of(const Options& options, const Target& target)
 {
     std::vector<EntryPoint> points = all_entry_points(target.maker);
@@ -24,6 +22,8 @@ std::vector<EntryPoint> points_of(const Options& options, const Target& target)
     });
     return points;
 }
+
+namespace {
 
 /// Those of --target, and the devices that --backend and --device keep; without these options, the usual GPUs.
 std::vector<Target> asked_targets(const Options& options)

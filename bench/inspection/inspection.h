@@ -12,6 +12,9 @@ struct Inspection {
     std::vector<std::string> skipped; ///< "sm_90: no nvcc here, ..." for each target that could not be asked
 };
 
+/// The entry points that the options keep, of those that the target has.
+[[nodiscard]] std::vector<EntryPoint> points_of(const Options& options, const Target& target);
+
 /// Compiles every entry point that the options keep for every target, and every driver's device, that they name; runs
 /// nothing.
 /// tell: see core/base/progress.h.

@@ -57,9 +57,10 @@ json figures_json(const CodeFigures& figures)
             {"instructions", figures.instructions}};
 }
 
-json compiled_json(const Backend& source, std::size_t device, const EntryPoint& point, const fs::path& code)
+json compiled_json(const Backend& source, std::size_t device, const EntryPoint& point, const fs::path& code,
+                   const fs::path& program)
 try {
-    const CompiledCode compiled = source.compiled(device, point.kernel, point.entry == Entry::outside);
+    const CompiledCode compiled = source.compiled(device, point.kernel, point.entry == Entry::outside, program);
     if (!code.empty()) write_whole(code, compiled.text);
     json line = {{"compiler", compiled.compiler}, {"lanes", compiled.lanes}, {"statistics", compiled.statistics}};
     if (!compiled.text.empty()) line["code"] = figures_json(read_amd(compiled.text));
@@ -134,12 +135,17 @@ struct Answer {
 };
 
 Answer ask_family(const std::string& family, const fs::path& driver, const std::vector<Inspected>& unknown,
-                  const std::vector<std::size_t>& numbers, const fs::path& code, const PartDone& tell)
+                  const std::vector<std::size_t>& numbers, const fs::path& code, const fs::path& program,
+                  const PartDone& tell)
 {
     const WorkFolder folder;
     const fs::path report = folder.path() / "report";
-    std::vector<std::string> arguments = {null_hardware_word, family, driver.string(), report.string(),
-                                          code.empty() ? "-" : (code / unknown.front().target.name).string()};
+    std::vector<std::string> arguments = {null_hardware_word,
+                                          family,
+                                          driver.string(),
+                                          report.string(),
+                                          code.empty() ? "-" : (code / unknown.front().target.name).string(),
+                                          program.empty() ? "-" : program.string()};
     for (const std::size_t number : numbers)
         arguments.push_back(std::to_string(number));
     double done = 0;
@@ -185,7 +191,7 @@ std::vector<std::size_t> numbers_of(const std::vector<EntryPoint>& points)
 } // namespace
 
 std::vector<Inspected> ask_null_hardware(const Target& target, const std::vector<EntryPoint>& points,
-                                         const fs::path& code, const PartDone& tell)
+                                         const fs::path& code, const PartDone& tell, const fs::path& program)
 {
     const fs::path driver = driver_file();
     if (driver.empty()) return unasked(target, points, no_radv);
@@ -193,7 +199,7 @@ std::vector<Inspected> ask_null_hardware(const Target& target, const std::vector
     const auto numbers = numbers_of(points);
     std::string first_reason;
     for (const std::string& family : family_names(target.name)) {
-        Answer answer = ask_family(family, driver, unknown, numbers, code, tell);
+        Answer answer = ask_family(family, driver, unknown, numbers, code, program, tell);
         if (answer.reason.empty()) return answer.rows;
         if (first_reason.empty()) first_reason = answer.reason;
     }
@@ -202,10 +208,11 @@ std::vector<Inspected> ask_null_hardware(const Target& target, const std::vector
 
 int run_null_hardware(const std::vector<std::string>& arguments)
 {
-    constexpr std::size_t before_numbers = 4;
+    constexpr std::size_t before_numbers = 5;
     if (arguments.size() < before_numbers) return exit_code(ErrorKind::usage);
     const std::string &family = arguments[0], &driver = arguments[1];
     const std::string code = arguments[3] == "-" ? "" : arguments[3];
+    const std::string program = arguments[4] == "-" ? "" : arguments[4];
     ::setenv("RADV_FORCE_FAMILY", family.c_str(), 1);
     ::setenv("VK_DRIVER_FILES", driver.c_str(), 1);  // of loaders from 1.3.207 on
     ::setenv("VK_ICD_FILENAMES", driver.c_str(), 1); // of all others
@@ -217,15 +224,15 @@ int run_null_hardware(const std::vector<std::string>& arguments)
         return exit_code(ErrorKind::missing);
     }
     const auto all = all_entry_points(Maker::amd);
-    const CompiledCode nothing = device.source->compiled(device.index, std::nullopt, true);
+    const CompiledCode nothing = device.source->compiled(device.index, std::nullopt, true, {});
     const auto most = nothing.statistics.find("Subgroups per SIMD");
     report << json{{"most_subgroups", most == nothing.statistics.end() ? 0.0 : most->second}}.dump() << std::endl;
     for (std::size_t i = before_numbers; i < arguments.size(); ++i) {
         std::size_t number = 0;
         std::from_chars(arguments[i].data(), arguments[i].data() + arguments[i].size(), number);
         const EntryPoint& point = all.at(number);
-        const json line =
-            compiled_json(*device.source, device.index, point, code.empty() ? code : code + code_file_name(point));
+        const json line = compiled_json(*device.source, device.index, point,
+                                        code.empty() ? code : code + code_file_name(point), program);
         report << line.dump(-1, ' ', false, json::error_handler_t::replace) << std::endl;
         std::fprintf(stderr, "%s\n", compiled_word);
     }

@@ -84,14 +84,15 @@ struct Compiled {
     std::string reason;
 };
 
-Compiled compile(const Nvcc& nvcc, const Target& target, const cuda::ProgramId& program, const fs::path& code)
+Compiled compile(const Nvcc& nvcc, const Target& target, const cuda::ProgramId& program, const fs::path& code,
+                 const std::string& text)
 {
     const WorkFolder folder;
     const fs::path source = folder.path() / (program.name() + ".cu"),
                    binary = folder.path() / (program.name() + ".cubin");
     const EmbeddedKernel* const kernel = find_kernel(cuda::embedded_sources(), program.source);
     if (kernel == nullptr) return {{}, {}, {}, "this build lacks the source of " + program.source};
-    std::ofstream(source) << std::string(kernel->text());
+    std::ofstream(source) << (text.empty() ? kernel->text() : std::string_view(text));
     std::vector<std::string> arguments = {
         "--cubin", "-std=c++17", "--keep", "--keep-dir", folder.path().string(), "-arch=" + target.name,
         "-Xptxas", "-v"};
@@ -206,7 +207,7 @@ std::map<std::string, PtxasReport> read_ptxas(const std::string& messages)
 }
 
 std::vector<Inspected> ask_nvcc(const Nvcc& nvcc, const Target& target, const std::vector<EntryPoint>& points,
-                                const fs::path& code, const PartDone& tell)
+                                const fs::path& code, const PartDone& tell, const std::string& text)
 {
     if (!nvcc.reason.empty()) return unasked(target, points, nvcc.reason);
     if (std::ranges::find(nvcc.targets, target.name) == nvcc.targets.end())
@@ -218,7 +219,8 @@ std::vector<Inspected> ask_nvcc(const Nvcc& nvcc, const Target& target, const st
         tell(static_cast<double>(rows.size()) / static_cast<double>(points.size()));
         const cuda::ProgramId program = cuda::program_of(point.kernel);
         auto found = kernels.find(program.name());
-        if (found == kernels.end()) found = kernels.emplace(program.name(), compile(nvcc, target, program, code)).first;
+        if (found == kernels.end())
+            found = kernels.emplace(program.name(), compile(nvcc, target, program, code, text)).first;
         Inspected& row = rows.emplace_back();
         row.target = target;
         row.point = point;

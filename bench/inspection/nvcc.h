@@ -36,10 +36,11 @@ struct Nvcc {
 
 /// Compiles each kernel of the entry points once for an NVIDIA target, with the flags of the build. All rows are
 /// skipped if nvcc is missing or does not support the target; those of a kernel that does not compile are errors. code:
-/// as in ask_null_hardware(): PTX, and machine code if there is a disassembler.
+/// as in ask_null_hardware(): PTX, and machine code if there is a disassembler. text: replaces that of the entry
+/// points' one kernel; empty: nothing is replaced.
 [[nodiscard]] std::vector<Inspected> ask_nvcc(const Nvcc& nvcc, const Target& target,
                                               const std::vector<EntryPoint>& points, const std::filesystem::path& code,
-                                              const PartDone& tell);
+                                              const PartDone& tell, const std::string& text = {});
 
 /// What `ptxas -v` reports for an entry.
 struct PtxasReport {

@@ -84,7 +84,8 @@ std::vector<OptionRow> trace_options()
              ". Default: files of the kernel of --method and --layout, or with --scene a case of it.",
          bit(Verb::dump), false, set_defect},
         {"Ray", "--variant", "CHANGE",
-         "Change the kernel of the case by these changes, as 'check --variants' names them. Default: none.",
+         "Change the kernel by these changes, as 'check --variants' names them: that of the case, or its text alone "
+         "without --scene. Default: none.",
          bit(Verb::dump), true, append_text(&Options::changes)},
         {"Ray", "--view", "N", "The view of the camera set, numbered from 0. Default: 0.", with_ray, false,
          [](Options& o, const std::string& v) { o.views = fmt::format("{}", parse_count("--view", v, 0, 1u << 30)); },

@@ -181,11 +181,13 @@ const VerbHelp verb_help[] = {
      "In exact mode no fused operation may decide a sign. The code of each program is searched for one: AMD's machine "
      "code, NVIDIA's PTX. 'none' means that none was found; 'boxes' counts those in the box tests of BVHs, which "
      "decide nothing; 'DECISIONS' counts the forbidden ones, and prints the first. Exits with 1 if there is one. "
-     "docs/inspect.md explains each column and its limits.",
+     "docs/inspect.md explains each column and its limits. --variants compiles changed kernels that mean the same, as "
+     "'check --variants' has them, and finds those that a compiler refuses or fuses.",
      "  tetrace inspect\n"
      "  tetrace inspect --backend cuda,vulkan --entry outside --schedule tiles\n"
      "  tetrace inspect --target gfx1100 --method all --out inspect.json\n"
-     "  tetrace inspect --target sm_90 --method project --layout half32 --code code --require-target sm_90\n"},
+     "  tetrace inspect --target sm_90 --method project --layout half32 --code code --require-target sm_90\n"
+     "  tetrace inspect --target sm_90,gfx1100 --entry outside --variants 100 --budget 10m\n"},
     {Verb::trace, "follow one ray, step by step, on every device",
      "Follows the ray of one pixel through the tets on every selected device, next to openmp: each step with its tet, "
      "its exit face, the neighbour, and three side products. The first step at which a device differs from openmp is "
@@ -209,10 +211,10 @@ const VerbHelp verb_help[] = {
     {Verb::dump, "write a kernel's source and code, or a reproducer, for a bug report",
      "Writes the files of one kernel as a backend's driver gets them. opencl: its source with all includes resolved. "
      "vulkan: GLSL, the SPIR-V of each program, and the machine code from drivers that return it. cuda: its source, "
-     "PTX if NVRTC is here, and machine code if the build has it. README.txt, which is also printed, says what each "
-     "file is and how to compile it without tetrace. A driver is loaded only for its machine code, in this process, "
-     "after everything else is written. Exits with 2 for a backend without such files: kernels of openmp, cuda-host "
-     "and embree are parts of programs and libraries.\n\n"
+     "PTX if NVRTC is here, and machine code if the build has it. cuda-host: its source as host C++. README.txt, which "
+     "is also printed, says what each file is and how to compile it without tetrace. A driver is loaded only for its "
+     "machine code, in this process, after everything else is written. Exits with 2 for a backend without such files: "
+     "kernels of openmp and embree are parts of programs and libraries.\n\n"
      "With --scene and --pixel, or with --defect, it writes a case instead: a launch (one work-group of a "
      "scene's) as plain files, the expected output (openmp's), and a host in C that runs it on opencl or vulkan "
      "without tetrace: exit code 0 as expected, 1 different, 2 cannot run.",

@@ -369,8 +369,9 @@ std::vector<OptionRow> judging_options()
          "'reproduce' shares the time evenly by the scenes that are left. The result states the budget that the "
          "skipped rows need. With --repeat, each repetition has it. One row is always measured, however small TIME "
          "is; otherwise a run exceeds the budget by at most a quarter. --benchmark_repetitions lifts the limit. "
-         "Default: 4m; of 'check' and 'reproduce' no limit, but of rivals 10m, of ladder 5m.",
-         sharing, false, set_seconds("--budget", &Options::budget_s),
+         "Default: 4m; of 'check' and 'reproduce' no limit, but of rivals 10m, of ladder 5m. For --variants it is the "
+         "time for all of them.",
+         sharing | bit(Verb::inspect), false, set_seconds("--budget", &Options::budget_s),
          usual_for(bit(Verb::bench) | bit(Verb::reproduce), "time for verifying and timing: 30s, 10m")},
         {"Judging", "--require", "BACKEND",
          "Fail with exit code 3 unless this backend has a usable device and, except for 'devices', has selected rows "
@@ -395,10 +396,12 @@ std::vector<OptionRow> judging_options()
         {"Judging", "--variants", "N",
          "Check N variants of each selected kernel instead of rows: its text with random changes that keep its "
          "meaning, "
-         "compiled anew by the driver. Each has the hits of the unchanged kernel, or the driver is wrong. 1 to "
-         "1000000.",
-         bit(Verb::check), false, set_count("--variants", &Options::variants, 1, 1'000'000)},
-        {"Judging", "--seed", "S", "Choose other variants: 0 to 4294967295. Default: 1.", bit(Verb::check), false,
+         "compiled anew by the driver. Each has the hits of the unchanged kernel, or the driver is wrong. 'inspect' "
+         "only "
+         "compiles them. 1 to 1000000.",
+         bit(Verb::check) | bit(Verb::inspect), false, set_count("--variants", &Options::variants, 1, 1'000'000)},
+        {"Judging", "--seed", "S", "Choose other variants: 0 to 4294967295. Default: 1.",
+         bit(Verb::check) | bit(Verb::inspect), false,
          [](Options& o, const std::string& v) { o.seed = parse_count("--seed", v, 0, 0xFFFFFFFF); }},
         {"Judging", "--tolerance", "PERCENT",
          "The difference in time that does not matter, in percent, 0 to 100. A row that is SLOWER by more is a "

@@ -9,6 +9,7 @@
 #include "core/base/control_groups.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <limits>
 #include <string_view>
@@ -163,7 +164,8 @@ void check_dump(const Options& options)
 }
 
 /// What `dump` accepts without a case, and what a case of a defect accepts; the other options choose a scene's case.
-constexpr std::string_view of_files[] = {"--backend", "--out", "--method", "--layout", "--math", "--device"};
+constexpr std::string_view of_files[] = {"--backend", "--out",    "--method", "--layout",
+                                         "--math",    "--device", "--variant"};
 constexpr std::string_view of_defects[] = {"--backend", "--out", "--defect"};
 
 void check_case(const Options& options, const CLI::App& app)
@@ -195,6 +197,13 @@ void check_together(const Options& options)
                                           " takes only seconds and cannot be sharded; leave out --shard");
     if (options.variants == 0 && options.seed)
         throw Error(ErrorKind::usage, "--seed chooses variants; say how many with --variants");
+    const bool only_compiles = options.verb == Verb::inspect;
+    if (only_compiles && options.variants == 0 && std::isfinite(options.budget_s))
+        throw Error(ErrorKind::usage, "--budget: inspect has it only with --variants, which says how many to compile");
+    if (only_compiles && options.variants > 0 &&
+        (!options.backends.empty() || !options.devices.empty() || options.code_folder))
+        throw Error(ErrorKind::usage, "--variants: inspect compiles them for GPUs that --target names, and keeps no "
+                                      "code; leave out --backend, --device and --code");
     if (options.brief && !options.columns.empty())
         throw Error(ErrorKind::usage, "--columns: --brief has columns of its own; leave one of them out");
     if (options.verb == Verb::trace) check_ray(options);

@@ -16,8 +16,9 @@ namespace tetrace {
 
 namespace {
 
-constexpr double max_compile_s = 60; // glslang takes less than one
-constexpr int not_found = 127;       // of env
+// glslang takes less than a second, g++ and nvcc some; a busy machine may let them wait.
+constexpr ChildLimits compiling{.time_s = 600, .processor_s = 60};
+constexpr int not_found = 127; // of env
 
 } // namespace
 
@@ -29,16 +30,27 @@ VariantProgram::VariantProgram(const std::string& backend, const KernelId& kerne
 VariantProgram::Source VariantProgram::source_of(const std::string& backend, const KernelId& kernel)
 {
     const std::string name = fmt::format("{}_{}", name_of(kernel.method), name_of(kernel.layout));
-    const std::string spirv = fmt::format("{}_{}_{}.spv", name, name_of(kernel.math), name_of(kernel.task));
+    const std::string with_math = fmt::format("{}_{}", name, name_of(kernel.math));
+    const Source known[] = {
+        {name + ".cl", {}, {}, {}, {}},
+        {name + ".comp", {}, fmt::format("{}_{}.spv", with_math, name_of(kernel.task)), {}, "glslang-tools"},
+        {name + ".cu", {}, with_math + ".ptx", {}, "nvidia-cuda-toolkit"},
+        {with_math + ".cpp", {}, with_math + ".so", {}, "g++, or set CXX"},
+    };
     const auto files = backend_named(backend, direct_backends()).kernel_files(kernel);
-    const auto find = [&](const std::string& wanted) { return std::ranges::find(files, wanted, &KernelFile::name); };
-    if (const auto text = find(name + ".cl"); text != files.end()) return {text->name, text->bytes, {}, {}};
-    const auto text = find(name + ".comp"), program = find(spirv);
-    if (text == files.end() || program == files.end() || !is_portable(kernel))
-        throw Error(ErrorKind::unsupported,
-                    fmt::format("{} has no text of {} that is compiled here; opencl and vulkan have", backend,
-                                name_of(kernel)));
-    return {text->name, text->bytes, program->name, program->command};
+    for (Source source : known) {
+        const auto text = std::ranges::find(files, source.name, &KernelFile::name);
+        const auto maker = std::ranges::find_if(files, [&](const KernelFile& file) {
+            return file.command.ends_with(" -o " + source.program + " " + source.name);
+        });
+        if (text == files.end() || !is_portable(kernel)) continue;
+        if (maker == files.end() && !source.program.empty()) continue;
+        source.text = text->bytes;
+        if (!source.program.empty()) source.command = maker->command;
+        return source;
+    }
+    throw Error(ErrorKind::unsupported,
+                fmt::format("{} has no text of {} that a compiler can be given here", backend, name_of(kernel)));
 }
 
 std::filesystem::path VariantProgram::write(const std::string& text, const std::filesystem::path& folder) const
@@ -49,12 +61,12 @@ std::filesystem::path VariantProgram::write(const std::string& text, const std::
     std::istringstream command(source_.command);
     for (std::string word; command >> word;)
         words.push_back(word == source_.name || word == source_.program ? (folder / word).string() : word);
-    const ChildOutcome outcome = run_child("/usr/bin/env", words, {.time_s = max_compile_s});
+    const ChildOutcome outcome = run_child("/usr/bin/env", words, compiling);
     if (outcome.end == ChildOutcome::End::interrupted) throw Error(ErrorKind::interrupted, "variants: interrupted");
     if (outcome.end == ChildOutcome::End::exited && outcome.code == 0) return folder / source_.program;
     if (outcome.end == ChildOutcome::End::exited && outcome.code == not_found)
-        throw Error(ErrorKind::missing,
-                    fmt::format("{} is missing, which compiles variants for Vulkan; install glslang-tools", words[0]));
+        throw Error(ErrorKind::missing, fmt::format("{} is missing, which compiles {}; install {}", words[0],
+                                                    source_.name, source_.package));
     throw Error(ErrorKind::driver, fmt::format("{} did not compile {}: {}", words[0], source_.name,
                                                printable_text(outcome.out + outcome.errors)));
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bench/variants/changes.h"
+#include "core/device/backend.h"
 #include "core/pack/kernel_id.h"
 
 #include <filesystem>
@@ -11,19 +12,26 @@ namespace tetrace {
 /// The text of a backend's kernel, and programs of its variants.
 class VariantProgram {
 public:
-    /// Throws Error{unsupported} if the backend's programs are not made of their text where the program runs.
+    /// Throws Error{unsupported} if the backend has no text of the kernel that a compiler can be given here.
     VariantProgram(const std::string& backend, const KernelId& kernel);
 
     [[nodiscard]] const VariantText& text() const { return text_; }
 
     /// Writes the program of a text into a folder, as SessionOptions::program_file has it; returns its file. Throws
-    /// Error{driver} with its messages if glslangValidator refuses the text, and Error{missing} if it is not installed.
+    /// Error{driver} with its messages if its compiler refuses the text, and Error{missing} if it is not installed.
     [[nodiscard]] std::filesystem::path write(const std::string& text, const std::filesystem::path& folder) const;
+
+    /// A text with the command that makes its program.
+    [[nodiscard]] KernelFile text_file(const std::string& text, const std::string& what) const
+    {
+        return {source_.name, what, source_.command, text};
+    }
 
 private:
     struct Source {
         std::string name, text;
         std::string program, command; ///< that makes the program of the text; empty: the text is the program
+        std::string package;          ///< that has the compiler
     };
     static Source source_of(const std::string& backend, const KernelId& kernel);
     explicit VariantProgram(Source source) : source_(std::move(source)), text_(source_.text) {}

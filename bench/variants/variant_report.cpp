@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 
 namespace tetrace {
 
@@ -35,7 +36,7 @@ nlohmann::json failure_json(const VariantFailure& failure)
 nlohmann::json row_json_of(const VariantRow& row)
 {
     const Device& device = row.row.device;
-    nlohmann::json object = {{"name", row_name(row.row.key)},
+    nlohmann::json object = {{"name", row.name},
                              {"backend", row.row.key.backend},
                              {"device_index", row.row.key.device},
                              {"device", device.name},
@@ -46,6 +47,7 @@ nlohmann::json row_json_of(const VariantRow& row)
                              {"failures", nlohmann::json::array()}};
     if (!device.driver.empty()) object["driver"] = device.driver;
     if (!device.implementation.empty()) object["implementation"] = device.implementation;
+    if (row.spilling) object["spilling"] = *row.spilling;
     if (!row.reason.empty()) object["reason"] = row.reason;
     if (row.fails_as_it_is) object["fails_as_it_is"] = true;
     for (const VariantFailure& failure : row.failures)
@@ -68,13 +70,20 @@ Table table_of(const std::vector<ResultValue>& rows)
                  {.key = "changes_of_variant", .title = "changes", .decimals = 0},
                  {.key = "wrong", .title = "wrong", .rank = 0},
                  {.key = "not_compiled", .title = "not compiled", .rank = 0},
-                 {.key = "not_run", .title = "not run", .rank = 0}});
+                 {.key = "not_run", .title = "not run", .rank = 0},
+                 {.key = "fused", .title = "fused", .rank = 0},
+                 {.key = "spilling", .title = "spilling", .rank = 0}});
     for (const ResultValue& row : rows) {
         const std::uint64_t ran = row.at("ran").count();
+        const auto spilling = row.find("spilling"); // then it was compiled, and did not run
+        const auto cell = [&](VariantSight sight, bool applies) {
+            return applies ? Cell(count_of(row, sight)) : Cell();
+        };
         table.add({row.at("name").line(), row.at("device").line(), ran,
                    ran == 0 ? Cell() : Cell(static_cast<double>(row.at("made").count()) / static_cast<double>(ran)),
-                   count_of(row, VariantSight::wrong), count_of(row, VariantSight::not_compiled),
-                   count_of(row, VariantSight::not_run)});
+                   cell(VariantSight::wrong, !spilling), count_of(row, VariantSight::not_compiled),
+                   cell(VariantSight::not_run, !spilling), cell(VariantSight::fused, spilling.has_value()),
+                   spilling ? Cell(spilling->count()) : Cell()});
     }
     return table;
 }
@@ -123,14 +132,21 @@ void add_failures(Sheet& sheet, const ResultValue& row)
 
 std::string summary_of(const std::vector<ResultValue>& rows)
 {
-    std::uint64_t ran = 0, counts[3] = {};
+    std::uint64_t ran = 0, spilling = 0;
+    std::map<VariantSight, std::uint64_t> counts;
     for (const ResultValue& row : rows) {
         ran += row.at("ran").count();
-        for (std::size_t i = 0; i < std::size(counts); ++i)
-            counts[i] += count_of(row, static_cast<VariantSight>(i + 1));
+        for (const VariantSight sight : values_of<VariantSight>())
+            counts[sight] += count_of(row, sight);
+        if (const auto count = row.find("spilling")) spilling += count->count();
     }
-    return fmt::format("{} of {}: {} wrong, {} not compiled, {} not run", counted(ran, "variant", "variants"),
-                       counted(rows.size(), "row", "rows"), counts[0], counts[1], counts[2]);
+    const std::string all =
+        fmt::format("{} of {}: ", counted(ran, "variant", "variants"), counted(rows.size(), "row", "rows"));
+    if (std::ranges::any_of(rows, [](const ResultValue& row) { return row.find("spilling").has_value(); }))
+        return all + fmt::format("{} not compiled, {} with fused operations in decisions, {} spilling",
+                                 counts[VariantSight::not_compiled], counts[VariantSight::fused], spilling);
+    return all + fmt::format("{} wrong, {} not compiled, {} not run", counts[VariantSight::wrong],
+                             counts[VariantSight::not_compiled], counts[VariantSight::not_run]);
 }
 
 bool has_failed(const VariantRow& row)
@@ -143,9 +159,9 @@ std::optional<CheckVerdict> verdict_of(const std::vector<VariantRow>& rows)
 {
     CheckTally tally{"variant", "variants"};
     for (const VariantRow& row : rows) {
-        if (row.fails_as_it_is) tally.add(device_label(row.row.key), true);
+        if (row.fails_as_it_is) tally.add(row.label, true);
         for (std::size_t i = 0; i < row.ran; ++i)
-            tally.add(device_label(row.row.key), i < row.failures.size());
+            tally.add(row.label, i < row.failures.size());
     }
     return tally.judged == 0 ? std::nullopt : std::optional(verdict_by_count(tally));
 }
@@ -171,8 +187,9 @@ ShownVariants shown_variants(const ResultValue& section)
         shown.sheet.labelled("Stopped", fmt::format("before all {} variants of each kernel had run: --budget, or a "
                                                     "signal, ended the check.",
                                                     with_commas(asked)));
-    for (const ResultValue& sentence : section.at("missing_devices").items())
-        shown.sheet.labelled("Missing", printable_text(sentence.text()));
+    if (const auto missing = section.find("missing_devices"))
+        for (const ResultValue& sentence : missing->items())
+            shown.sheet.labelled("Missing", printable_text(sentence.text()));
     return shown;
 }
 
@@ -180,12 +197,12 @@ Report variant_report(const std::vector<VariantRow>& rows, const std::vector<nlo
                       const std::vector<std::string>& missing, const Options& options)
 {
     nlohmann::json section = result_head(options);
-    section["scenes"] = scenes;
+    if (options.verb == Verb::check) section["scenes"] = scenes;
     section["variants"] = {
         {"seed", options.seed.value_or(1)}, {"asked", options.variants}, {"rows", nlohmann::json::array()}};
     for (const VariantRow& row : rows)
         section["variants"]["rows"].push_back(row_json_of(row));
-    section["missing_devices"] = missing;
+    if (options.verb == Verb::check) section["missing_devices"] = missing;
     set_verdict(section, verdict_of(rows));
     const nlohmann::json json = {{"tetrace", std::move(section)}};
     const ResultValue head = ResultValue(json, "the variants").at("tetrace");
@@ -212,9 +229,8 @@ std::string variant_junit(const std::vector<VariantRow>& rows, const std::string
                                     : row.ran == 0  ? CaseOutcome::skipped
                                                     : CaseOutcome::passed;
         const Device& device = row.row.device;
-        cases.push_back({row.row.key.backend, device_label(row.row.key), device.name, device.driver,
-                         "variants/" + row_name(row.row.key), outcome, reason, 0, fmt::format("{} variants", row.ran),
-                         device.library});
+        cases.push_back({row.row.key.backend, row.label, device.name, device.driver, "variants/" + row.name, outcome,
+                         reason, 0, fmt::format("{} variants", row.ran), device.library});
     }
     return junit_suite("variants", cases, problem);
 }

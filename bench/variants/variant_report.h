@@ -2,7 +2,7 @@
 
 #include "bench/output/report.h"
 #include "bench/results/result_value.h"
-#include "bench/variants/variant_run.h"
+#include "bench/variants/variant_trials.h"
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -16,11 +16,11 @@ struct ShownVariants {
     Table table;
 };
 
-/// What `check --variants` prints, and `show` prints again. section: of its result. Throws Error{invalid_input} naming
-/// the key that is missing or of another kind.
+/// What `check --variants` and `inspect --variants` print, and `show` prints again. section: of its result. Throws
+/// Error{invalid_input} naming the key that is missing or of another kind.
 [[nodiscard]] ShownVariants shown_variants(const ResultValue& section);
 
-/// missing: sentences on backends without a device. scenes: as results record them.
+/// missing: sentences on backends without a device. scenes: as results record them. `inspect` has neither.
 [[nodiscard]] Report variant_report(const std::vector<VariantRow>& rows, const std::vector<nlohmann::json>& scenes,
                                     const std::vector<std::string>& missing, const Options& options);
 

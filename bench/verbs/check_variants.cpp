@@ -3,6 +3,7 @@
 #include "bench/terminal/interrupts.h"
 #include "bench/terminal/progress.h"
 #include "bench/variants/variant_report.h"
+#include "bench/variants/variant_run.h"
 #include "bench/verbs/commands.h"
 #include "core/base/error.h"
 #include "core/base/files.h"
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace tetrace {
 
@@ -35,14 +37,18 @@ void require_variants(const std::vector<VariantRow>& rows, const std::vector<std
             throw Error(ErrorKind::missing, fmt::format("--require {0}: no variant ran on {0}", name));
 }
 
-/// Kernels of these backends are compiled where the program runs; openmp's are parts of it. With --backend, others are
-/// rows with a reason.
+/// Kernels of these backends can be compiled where the program runs; openmp's are parts of it. With --backend, others
+/// are rows with a reason.
 std::vector<RowKey> keys_of(const Options& options)
 {
     std::vector<RowKey> keys = selected_rows(options, [](const std::string&) { return true; });
+    constexpr std::string_view compiling[] = {"opencl", "vulkan", "cuda", "cuda-host"};
     if (options.backends.empty())
-        std::erase_if(keys, [](const RowKey& key) { return key.backend != "opencl" && key.backend != "vulkan"; });
-    if (keys.empty()) throw Error(ErrorKind::missing, "--variants: no device of opencl or vulkan has a selected row");
+        std::erase_if(
+            keys, [&](const RowKey& key) { return std::ranges::find(compiling, key.backend) == std::end(compiling); });
+    if (keys.empty())
+        throw Error(ErrorKind::missing,
+                    fmt::format("--variants: no device of {} has a selected row", fmt::join(compiling, ", ")));
     return keys;
 }
 

@@ -1,11 +1,15 @@
 #include "bench/inspection/drivers.h"
 #include "bench/inspection/inspection.h"
+#include "bench/terminal/interrupts.h"
 #include "bench/terminal/progress.h"
+#include "bench/variants/variant_inspection.h"
+#include "bench/variants/variant_report.h"
 #include "bench/verbs/commands.h"
 #include "core/base/error.h"
 
 #include <algorithm>
 #include <filesystem>
+#include <fmt/format.h>
 
 namespace tetrace {
 
@@ -31,12 +35,27 @@ void check_required(const Options& options)
             static_cast<void>(parse_target("--require-target", name));
 }
 
+int inspect_variants_command(const Options& options)
+{
+    const StopWhenInterrupted stop;
+    something_to_keep();
+    const Budget budget(options.budget_s);
+    const std::vector<VariantRow> rows = inspect_variants(options, budget);
+    deliver(options, variant_report(rows, {}, {}, options));
+    if (is_interrupted()) return end_interrupted();
+    for (const std::string& name : options.required)
+        if (std::ranges::none_of(rows, [&](const VariantRow& row) { return row.label == name && row.ran > 0; }))
+            throw Error(ErrorKind::missing, fmt::format("--require-target {0}: no variant was compiled for {0}", name));
+    return exit_code(rows);
+}
+
 } // namespace
 
 int inspect_command(const Options& options)
 {
     check_output(options);
     check_required(options);
+    if (options.variants > 0) return inspect_variants_command(options);
     make_code_folder(options);
     const Inspection inspection = inspect(options, progress_line().callback());
     progress_line().clear();

@@ -130,7 +130,8 @@ int run_program(const std::vector<std::string>& arguments)
         const bool is_timed = options.verb == Verb::bench || options.verb == Verb::reproduce;
         if (is_timed && !options.list && options.threads != 1 && !this_rank()) start_again_if_busy(arguments);
         const auto cache = cache_of(options.verb);
-        set_isolation(options.isolation, options.driver_limit_s);
+        set_isolation(options.isolation, options.driver_limit_s,
+                      options.variants > 0 ? std::vector<std::string>{"cuda-host"} : std::vector<std::string>{});
         return run_verb_or_rank(options);
     } catch (const Error& error) {
         say(std::string("tetrace: ") + error.what());

@@ -157,8 +157,9 @@ struct SessionOptions {
     unsigned packet_lanes = 0;                ///< of schedule packets, one of packet_widths; 0: the widest there is
     std::uint64_t max_buffer_bytes = 0;       ///< limit to impose on the device's largest buffer; 0: none
     std::filesystem::path program_cache = {}; ///< folder for compiled kernels; empty: they are not kept
-    /// A file that replaces the kernel's program: for opencl OpenCL C, for vulkan SPIR-V that reads the scene from
-    /// storage buffers. Other backends do not read it. Empty: nothing is replaced.
+    /// A file that replaces the kernel's program: for opencl OpenCL C; for vulkan SPIR-V that reads the scene from
+    /// storage buffers; for cuda what its driver loads; for cuda-host a shared object. Other backends do not read it.
+    /// Empty: nothing is replaced.
     std::filesystem::path program_file = {};
 };
 
@@ -313,10 +314,12 @@ public:
     /// gets. Empty if there is none.
     [[nodiscard]] virtual std::vector<KernelFile> kernel_files(const KernelId&) const { return {}; }
     /// The launch of the tile number launch.first_tile, as such a device gets it (facts that are not known may be
-    /// missing). kernel: portable, of task trace or rays. rays: those given, for task rays. The output has the results
-    /// of all rays of the launch, as OutputParts has them for one job. Empty if there is no host for the API.
+    /// missing). kernel: portable, of task trace or rays. rays: those given, for task rays. program_file: as in
+    /// SessionOptions. The output has the results of all rays of the launch, as OutputParts has them for one job. Empty
+    /// if there is no host for the API.
     [[nodiscard]] virtual std::optional<LaunchCase> tile_case(const Device&, const KernelId&, const PackedScene&,
-                                                              const LaunchParams&, std::span<const Quad>) const
+                                                              const LaunchParams&, std::span<const Quad>,
+                                                              const std::filesystem::path& /*program_file*/) const
     {
         return std::nullopt;
     }
@@ -330,10 +333,11 @@ public:
     [[nodiscard]] virtual bool shows_code() const { return false; }
     /// What the device's driver made of a kernel, as sessions compile it for a GPU. The device need not be usable:
     /// compile_only is enough. kernel: without one, a kernel that needs next to no registers is compiled.
-    /// starts_outside: of task trace, no ray starts in a tet. Throws Error{unsupported} if the driver reports nothing
-    /// of its code, Error{missing} if the device cannot be used, Error{driver} if it fails.
+    /// starts_outside: of task trace, no ray starts in a tet. program_file: replaces the kernel's program under Vulkan,
+    /// as in SessionOptions. Throws Error{unsupported} if the driver reports nothing of its code, Error{missing} if the
+    /// device cannot be used, Error{driver} if it fails.
     [[nodiscard]] virtual CompiledCode compiled(std::size_t device, const std::optional<KernelId>& kernel,
-                                                bool starts_outside) const;
+                                                bool starts_outside, const std::filesystem::path& program_file) const;
     /// Whether run_defect() runs the reduced kernels of core/device/defects.h.
     [[nodiscard]] virtual bool runs_defects() const { return false; }
     /// Compiles the reduced kernel of that name and runs it; returns a word for each item. Throws Error as open() does.

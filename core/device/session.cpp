@@ -48,7 +48,7 @@ TraceJob column_of(std::size_t rays)
 
 } // namespace
 
-CompiledCode Backend::compiled(std::size_t, const std::optional<KernelId>&, bool) const
+CompiledCode Backend::compiled(std::size_t, const std::optional<KernelId>&, bool, const std::filesystem::path&) const
 {
     throw Error(ErrorKind::unsupported, name() + " reports nothing of its code");
 }

@@ -76,8 +76,9 @@ private:
             const auto has_kernel = request.get<bool>();
             const auto kernel = request.get<KernelId>();
             const auto starts_outside = request.get<bool>();
-            const auto code =
-                backend_->compiled(device, has_kernel ? std::optional(kernel) : std::nullopt, starts_outside);
+            const std::filesystem::path program_file = request.get_text();
+            const auto code = backend_->compiled(device, has_kernel ? std::optional(kernel) : std::nullopt,
+                                                 starts_outside, program_file);
             put_code(answer, code, SharedMemory(std::move(file), max_code_bytes));
         } else {
             const auto yardstick = backend_->yardstick(device, get_options(request));

@@ -275,8 +275,8 @@ std::vector<std::uint32_t> IsolatedBackend::run_defect(std::size_t device, std::
     return words;
 }
 
-CompiledCode IsolatedBackend::compiled(std::size_t device, const std::optional<KernelId>& kernel,
-                                       bool starts_outside) const
+CompiledCode IsolatedBackend::compiled(std::size_t device, const std::optional<KernelId>& kernel, bool starts_outside,
+                                       const std::filesystem::path& program_file) const
 {
     ByteWriter request;
     request.put(Request::compiled);
@@ -284,6 +284,7 @@ CompiledCode IsolatedBackend::compiled(std::size_t device, const std::optional<K
     request.put(kernel.has_value());
     request.put(kernel.value_or(KernelId{}));
     request.put(starts_outside);
+    request.put_text(program_file.native());
     const std::string what = kernel ? name_of(*kernel) : "an empty kernel";
     const SharedMemory text(max_code_bytes);
     ByteReader answer = child_of(device)->call({"compiling " + what, request, text.file(), call_limit_s(0), true});

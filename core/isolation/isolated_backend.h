@@ -26,8 +26,8 @@ public:
     [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t device, MathMode math,
                                                    std::span<const Quad> operations) override;
     [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t device, const SessionOptions& options) override;
-    [[nodiscard]] CompiledCode compiled(std::size_t device, const std::optional<KernelId>& kernel,
-                                        bool starts_outside) const override;
+    [[nodiscard]] CompiledCode compiled(std::size_t device, const std::optional<KernelId>& kernel, bool starts_outside,
+                                        const std::filesystem::path& program_file) const override;
     [[nodiscard]] bool runs_defects() const override { return inner_->runs_defects(); }
     [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name,
                                                         const DefectLaunch& launch) override;

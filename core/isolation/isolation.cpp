@@ -11,6 +11,7 @@ namespace {
 struct Decision {
     Isolation isolation = Isolation::none;
     double call_limit_s = 0;
+    std::vector<std::string> also = {};
 };
 
 Decision& decision()
@@ -21,9 +22,9 @@ Decision& decision()
 
 } // namespace
 
-void set_isolation(Isolation isolation, double call_limit_s)
+void set_isolation(Isolation isolation, double call_limit_s, const std::vector<std::string>& also)
 {
-    decision() = {isolation, call_limit_s};
+    decision() = {isolation, call_limit_s, also};
 }
 
 bool is_isolated()
@@ -38,8 +39,11 @@ std::vector<Backend*> isolated(const std::vector<Backend*>& backends, const std:
     DriverProcesses processes;
     processes.arguments = {std::string(driver_verb)};
     processes.call_limit_s = decision().call_limit_s;
+    const auto is_of = [](const std::vector<std::string>& names, const Backend* backend) {
+        return std::ranges::find(names, backend->name()) != names.end();
+    };
     for (Backend*& backend : all)
-        if (std::ranges::find(foreign, backend->name()) != foreign.end())
+        if (is_of(foreign, backend) || is_of(decision().also, backend))
             backend = made.emplace_back(std::make_unique<IsolatedBackend>(*backend, processes)).get();
     return all;
 }

@@ -16,8 +16,9 @@ inline constexpr auto enum_names<Isolation> = names_up_to<Isolation::device>("no
 inline constexpr std::string_view driver_verb = "serve-driver";
 
 /// Decides for all_backends(); call it once, before any driver is needed. Without it, drivers run in this process.
-/// call_limit_s: seconds that a driver gets for a call; 0: by the size of its work.
-void set_isolation(Isolation isolation, double call_limit_s);
+/// call_limit_s: seconds that a driver gets for a call; 0: by the size of its work. also: drivers of ours that get a
+/// process of their own, too, because they run what another compiler makes.
+void set_isolation(Isolation isolation, double call_limit_s, const std::vector<std::string>& also = {});
 /// Whether it was decided for Isolation::device.
 [[nodiscard]] bool is_isolated();
 

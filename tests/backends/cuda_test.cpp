@@ -182,7 +182,7 @@ TEST(CudaDriver, says_what_it_made_of_a_kernel_and_how_many_of_its_warps_fit)
     const auto compiled = [&](Layout layout, Method method, Schedule schedule) {
         const KernelId kernel{
             .structure = structure_of(layout), .method = method, .layout = layout, .schedule = schedule};
-        return backend.compiled(0, kernel, true).statistics;
+        return backend.compiled(0, kernel, true, {}).statistics;
     };
     const auto walk = compiled(Layout::tet80, Method::maria, Schedule::tiles);
     EXPECT_EQ(walk.at("NUM_REGS"), 40);
@@ -199,7 +199,7 @@ TEST(CudaDriver, that_reports_nothing_of_its_code_is_unsupported)
 {
     const auto& host = cuda_host_backend();
     EXPECT_FALSE(host.devices()[0].reports_code);
-    EXPECT_TRUE(contains(error_of([&] { (void)host.compiled(0, KernelId{}, true); }), "does not report its code"));
+    EXPECT_TRUE(contains(error_of([&] { (void)host.compiled(0, KernelId{}, true, {}); }), "does not report its code"));
 }
 
 TEST(CudaDriver, that_is_not_there_is_a_device_that_says_so)

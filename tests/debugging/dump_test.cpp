@@ -98,10 +98,22 @@ TEST_F(Dump, of_cuda_is_a_source_and_the_command_that_makes_ptx)
     EXPECT_TRUE(contains(ptx, "trace_tiles_project_half32_exact"));
 }
 
+TEST_F(Dump, of_cuda_host_and_of_a_variant_is_one_text_that_its_command_compiles)
+{
+    if (!dumps("cuda-host", "--method maria --layout tet80")) GTEST_SKIP() << ended_.errors;
+    EXPECT_TRUE(contains(out("maria_tet80_exact.cpp"), "extern \"C\" __global__"));
+    if (!is_installed("c++")) GTEST_SKIP() << "no C++ compiler";
+    const std::string command = command_for("maria_tet80_exact.cpp");
+    EXPECT_EQ(run("-c 'cd out && " + command + "'", "/bin/sh").code, 0) << command;
+    ASSERT_TRUE(dumps("cuda", "--method maria --layout tet80 --variant other_face/struct"));
+    EXPECT_TRUE(contains(out("maria_tet80.cu"), "variant_of_other_face_all"));
+    EXPECT_TRUE(command_for("maria_tet80.cu").starts_with("nvcc --ptx ")) << ended_.out;
+    EXPECT_EQ(run("dump --backend cuda --variant no/such --out other").code, 2);
+}
+
 TEST_F(Dump, of_what_has_no_files_is_refused)
 {
-    for (const std::string arguments :
-         {"--backend openmp", "--backend cuda-host", "--backend embree", "--backend opencl --layout embree"}) {
+    for (const std::string arguments : {"--backend openmp", "--backend embree", "--backend opencl --layout embree"}) {
         const Ended ended = run("dump --out out " + arguments);
         EXPECT_EQ(ended.code, 2) << arguments << ended.out;
         EXPECT_FALSE(ended.errors.empty());

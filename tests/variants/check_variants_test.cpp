@@ -24,25 +24,27 @@ protected:
         return run(std::string("check --out checked.json --junit checked.xml ") + kernel + arguments);
     }
 
-    /// The same for Vulkan, with this as its glslangValidator. $text is the text's file, and $real its compiler.
-    Ended check_with(const std::string& compiler, const std::string& arguments)
+    /// Runs the program with this as a compiler of that name, by default Vulkan's. $text is the text's file, and $real
+    /// the compiler itself.
+    Ended check_with(const std::string& compiler, const std::string& arguments,
+                     const std::string& name = "glslangValidator")
     {
         const auto folder = folder_.path() / "wrong";
         std::filesystem::create_directories(folder);
-        const auto program = folder / "glslangValidator";
-        write_file(program, "#!/bin/sh\nfor text; do :; done\nreal=$(PATH=${PATH#*:} command -v glslangValidator)\n" +
+        const auto program = folder / name;
+        write_file(program, "#!/bin/sh\nfor text; do :; done\nreal=$(PATH=${PATH#*:} command -v " + name + ")\n" +
                                 compiler + "\n");
         std::filesystem::permissions(program, std::filesystem::perms::owner_all);
-        return run("PATH='" + folder.string() + ":'$PATH '" + TETRACE_PROGRAM + "' " + arguments, "/usr/bin/env");
+        return run("CXX=c++ PATH='" + folder.string() + ":'$PATH '" + TETRACE_PROGRAM + "' " + arguments,
+                   "/usr/bin/env");
     }
 
-    [[nodiscard]] int run_case() const
+    /// The host of the case, compiled, and then what it says. That the C compiler fails is another matter.
+    Ended run_case()
     {
-        const int status =
-            std::system(("cd '" + (folder_.path() / "case").string() +
-                         "' && cc -O1 -o run_case run_case.c -l:libvulkan.so.1 && ./run_case > /dev/null")
-                            .c_str());
-        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+        const Ended compiled = run("-c 'cd case && cc -O1 -o run_case run_case.c -l:libvulkan.so.1'", "/bin/sh");
+        EXPECT_EQ(compiled.code, 0) << compiled.errors;
+        return run("-c 'cd case && ./run_case'", "/bin/sh");
     }
 
     [[nodiscard]] nlohmann::json variants() const
@@ -61,10 +63,28 @@ constexpr const char* wrong_at = "--variants 2 --seed 7 ";
 constexpr const char* crashing_compiler =
     "if grep -q variant_of_other_face_all \"$text\"; then kill -SEGV $$; fi\nexec \"$real\" \"$@\"";
 constexpr const char* crashing_at = "--variants 3 --seed 5 ";
+/// Its programs end the process at the same.
+constexpr const char* trapping_compiler =
+    "sed -i 's/    variant_of_other_face_all variant_all;/__builtin_trap(); &/' \"$text\"\nexec \"$real\" \"$@\"";
+/// Its code is one instruction, which fuses if a function has its arguments in a struct; then it spills, too.
+constexpr const char* fusing_nvcc = R"(case $1 in
+--version) echo 'Cuda compilation tools, release 0.0, V0.0.0' && exit ;;
+--list-gpu-code) echo sm_90 && exit ;;
+esac
+while [ $# -gt 1 ]; do
+    if [ "$1" = --keep-dir ]; then folder=$2; fi
+    shift
+done
+kernel=$(basename "$text" .cu) instruction='add.rn.f32 %f1, %f2, %f3;' stores=0
+if grep -q variant_of_other_face_all "$text"; then instruction='fma.rn.f32 %f1, %f2, %f3, %f4;' stores=8; fi
+printf '.visible .entry %s(\n)\n{\n\t%s\n\tret;\n}\n' "trace_tiles_$kernel" "$instruction" > "$folder/$kernel.ptx"
+echo "Compiling entry function 'trace_tiles_$kernel' for 'sm_90'" >&2
+echo "0 bytes stack frame, $stores bytes spill stores, 0 bytes spill loads" >&2
+echo "Used 32 registers" >&2)";
 
 } // namespace
 
-TEST_F(CheckVariants, of_opencl_and_vulkan_have_the_hits_of_the_kernel_as_it_is)
+TEST_F(CheckVariants, of_every_api_have_the_hits_of_the_kernel_as_it_is)
 {
     const Ended ended = check("--variants 3");
     if (ended.code == 3) GTEST_SKIP() << ended.errors;
@@ -102,9 +122,11 @@ TEST_F(CheckVariants, of_a_compiler_that_drops_a_loop_are_reduced_to_that_loop)
     const std::string dump = command.substr(std::string("tetrace ").size());
     if (std::system("command -v cc > /dev/null") != 0) GTEST_SKIP() << "no C compiler";
     ASSERT_EQ(check_with(wrong_compiler, dump).code, 0);
-    EXPECT_EQ(run_case(), 1);
+    const Ended wrong = run_case();
+    EXPECT_EQ(wrong.code, 1) << wrong.out << wrong.errors;
     ASSERT_EQ(run(dump).code, 0);
-    EXPECT_EQ(run_case(), 0);
+    const Ended right = run_case();
+    EXPECT_EQ(right.code, 0) << right.out << right.errors;
 }
 
 TEST_F(CheckVariants, of_a_compiler_that_crashes_are_failures_and_not_the_end)
@@ -119,6 +141,53 @@ TEST_F(CheckVariants, of_a_compiler_that_crashes_are_failures_and_not_the_end)
     ASSERT_EQ(row.at("failures").size(), 1u) << row;
     EXPECT_EQ(row.at("failures").at(0).at("outcome"), "not compiled");
     EXPECT_EQ(row.at("failures").at(0).at("reduced"), nlohmann::json({"other_face/struct"}));
+}
+
+TEST_F(CheckVariants, of_cuda_host_whose_programs_end_the_process_are_failures_and_their_text_is_written)
+{
+    const Ended ended = check_with(
+        trapping_compiler, std::string("check --backend cuda-host --out checked.json ") + crashing_at + kernel, "c++");
+    if (ended.code == 3) GTEST_SKIP() << ended.errors;
+    ASSERT_EQ(ended.code, 1) << ended.out << ended.errors;
+    const auto found = variants();
+    const auto& row = found.at("rows").at(0);
+    EXPECT_EQ(row.at("ran"), 3);
+    ASSERT_EQ(row.at("failures").size(), 1u) << row;
+    const auto& failure = row.at("failures").at(0);
+    EXPECT_EQ(failure.at("outcome"), "not run");
+    EXPECT_EQ(failure.at("reduced"), nlohmann::json({"other_face/struct"}));
+    const std::string command = failure.at("command");
+    ASSERT_EQ(run(command.substr(std::string("tetrace ").size())).code, 0) << command;
+    const std::string text = file("case/maria_tet80_exact.cpp");
+    EXPECT_TRUE(contains(text, "variant_of_other_face(variant_of_other_face_all variant_all)")) << command;
+
+    const Ended missing =
+        run("CXX=/no/compiler '" + std::string(TETRACE_PROGRAM) + "' check --backend cuda-host --variants 1 " + kernel,
+            "/usr/bin/env");
+    EXPECT_EQ(missing.code, 3) << missing.out;
+    EXPECT_TRUE(contains(missing.out, "install g++")) << missing.out;
+}
+
+TEST_F(CheckVariants, that_inspect_compiles_are_reduced_to_the_change_that_makes_the_compiler_fuse)
+{
+    const Ended ended = check_with(fusing_nvcc,
+                                   std::string("inspect --target sm_90 --method maria --layout tet80 --entry outside "
+                                               "--schedule tiles --out checked.json ") +
+                                       crashing_at,
+                                   "nvcc");
+    ASSERT_EQ(ended.code, 1) << ended.out << ended.errors;
+    const auto found = variants();
+    const auto& row = found.at("rows").at(0);
+    EXPECT_EQ(row.at("ran"), 3);
+    EXPECT_EQ(row.at("spilling"), 1);
+    ASSERT_EQ(row.at("failures").size(), 1u) << row;
+    EXPECT_EQ(row.at("failures").at(0).at("outcome"), "fused");
+    EXPECT_EQ(row.at("failures").at(0).at("reduced"), nlohmann::json({"other_face/struct"}));
+    EXPECT_EQ(row.at("failures").at(0).at("command"),
+              "tetrace dump --backend cuda --method maria --layout tet80 --variant other_face/struct --out case");
+    EXPECT_TRUE(contains(ended.out, "FAILED    1 of 3 variants")) << ended.out;
+    const Ended shown = run("show checked.json");
+    EXPECT_TRUE(contains(shown.out, "1 with fused operations in decisions, 1 spilling")) << shown.out << shown.errors;
 }
 
 TEST_F(CheckVariants, that_a_signal_ends_in_a_reduction_are_a_result)
