@@ -1,5 +1,3 @@
-// methods/: the exit-face searches, one file each, and what several of them share.
-//
 // The sides of a ray at the edges of a tet, as the methods of the paper take them, and the exit face of the tet that a
 // ray starts in, for methods that need an entry face.
 #ifndef TETRACE_KERNELS_METHODS_EDGE_SIDES_H
