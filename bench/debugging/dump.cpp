@@ -111,13 +111,15 @@ std::vector<KernelFile> dumped_files(const Options& options, const std::vector<B
         return page_files(kernel);
     }
     const Backend& backend = chosen(options, backends);
-    if (!options.changes.empty()) {
-        const VariantProgram variant(backend.name(), kernel);
-        return {
-            variant.text_file(variant.text().with(variant.text().named(options.changes)),
-                              fmt::format("the kernel's text, with the changes {}", fmt::join(options.changes, ", ")))};
-    }
     std::vector<KernelFile> files = backend.kernel_files(kernel);
+    if (!options.changes.empty() && !files.empty()) {
+        const VariantProgram variant(backend.name(), kernel);
+        return {variant.text_file(
+            variant.text().with(variant.text().named(options.changes)),
+            fmt::format("the kernel's text, with the changes {}; the command is that of primary rays, "
+                        "and the text has all tasks",
+                        fmt::join(options.changes, ", ")))};
+    }
     if (files.empty())
         throw Error(
             ErrorKind::usage,

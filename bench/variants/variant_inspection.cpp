@@ -152,6 +152,7 @@ std::vector<VariantRow> inspect_variants(const Options& options, const Budget& b
     const Compilers compilers = find_compilers(programs);
     std::vector<std::unique_ptr<VariantTrials>> trials;
     for (const InspectedProgram& program : programs) {
+        if (!trials.empty() && budget.left_s() <= 0) break; // the others have not even been compiled as they are
         const double done = static_cast<double>(trials.size()) / static_cast<double>(programs.size());
         progress_line().show("compiling", done, -1, name_of_program(program) + " for " + program.target.name);
         trials.push_back(std::make_unique<InspectedTrials>(program, compilers, options, budget));

@@ -184,8 +184,8 @@ ShownVariants shown_variants(const ResultValue& section)
     shown.sheet.labelled("Verified", summary_of(rows));
     if (const std::uint64_t asked = variants.at("asked").count(); std::ranges::any_of(
             rows, [&](const ResultValue& row) { return !row.find("reason") && row.at("ran").count() < asked; }))
-        shown.sheet.labelled("Stopped", fmt::format("before all {} variants of each kernel had run: --budget, or a "
-                                                    "signal, ended the check.",
+        shown.sheet.labelled("Stopped", fmt::format("before all {} variants of each kernel were tried, by "
+                                                    "--budget or a signal.",
                                                     with_commas(asked)));
     if (const auto missing = section.find("missing_devices"))
         for (const ResultValue& sentence : missing->items())

@@ -2,7 +2,9 @@
 
 #include "bench/measuring/ray_walks.h"
 #include "bench/measuring/verify.h"
+#include "bench/terminal/interrupts.h"
 #include "core/base/hash.h"
+#include "core/base/printable.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -29,9 +31,25 @@ public:
         }
         hashes_ = answers->view_hashes;
         find_program(row.key.backend);
+        if (is_runnable()) try_as_it_is();
     }
 
 private:
+    /// The unchanged text, compiled as variants are, by another compiler than the row's or into another form: if that
+    /// fails, no change is to blame.
+    void try_as_it_is()
+    try {
+        const Seen seen = look({});
+        if (seen.sight == VariantSight::right) return;
+        result_.reason = fmt::format("{} with its text as it is, compiled as variants are{}{}", name_of(seen.sight),
+                                     seen.reason.empty() ? "" : ": ", printable_text(seen.reason));
+        result_.fails_as_it_is = true;
+    } catch (const Error& error) {
+        if (error.kind() == ErrorKind::interrupted) return interrupt();
+        if (error.kind() != ErrorKind::missing) throw;
+        result_.reason = error.what();
+    }
+
     [[nodiscard]] Seen look(const std::vector<std::size_t>& changes) override
     {
         row_->outcome = Traced{};

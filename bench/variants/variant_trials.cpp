@@ -19,12 +19,6 @@ constexpr std::size_t max_causes = 3;
 
 } // namespace
 
-std::size_t VariantRow::count(VariantSight sight) const
-{
-    const auto failed = std::ranges::count(failures, sight, &VariantFailure::sight);
-    return sight == VariantSight::right ? ran - failures.size() : static_cast<std::size_t>(failed);
-}
-
 VariantTrials::VariantTrials(RowRecord row, std::string name, std::string label, const Options& options,
                              const Budget& budget)
     : options_(&options), budget_(&budget)

@@ -52,8 +52,6 @@ struct VariantRow {
     std::vector<VariantFailure> failures;
     std::string reason;          ///< why none ran; empty if they should
     bool fails_as_it_is = false; ///< the text as it is is wrong, or its driver fails; then none runs
-
-    [[nodiscard]] std::size_t count(VariantSight sight) const;
 };
 
 /// Tries the variants of a kernel's text, and reduces those that fail.

@@ -82,7 +82,7 @@ int check_variants(const Options& options)
         throw;
     }
     write_junit(rows, options, is_interrupted() ? "the check was interrupted: not all variants ran" : "");
-    return is_interrupted() ? end_interrupted() : exit_code(rows);
+    return is_interrupted() ? end_interrupted_with_result(options) : exit_code(rows);
 }
 
 } // namespace tetrace

@@ -57,6 +57,8 @@ void require_devices(const std::vector<std::string>& backends);
 void say_how_to_go_on(const Options& options);
 /// Says so, if it was asked for, at the end of a run that was interrupted; the exit code.
 [[nodiscard]] int end_interrupted();
+/// The same after a result of what ran by then has been written: names its file.
+[[nodiscard]] int end_interrupted_with_result(const Options& options);
 
 /// Throws Error{missing} naming the first required backend of which no row is selected, so that it would pass
 /// unnoticed.

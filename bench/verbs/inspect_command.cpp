@@ -42,7 +42,7 @@ int inspect_variants_command(const Options& options)
     const Budget budget(options.budget_s);
     const std::vector<VariantRow> rows = inspect_variants(options, budget);
     deliver(options, variant_report(rows, {}, {}, options));
-    if (is_interrupted()) return end_interrupted();
+    if (is_interrupted()) return end_interrupted_with_result(options);
     for (const std::string& name : options.required)
         if (std::ranges::none_of(rows, [&](const VariantRow& row) { return row.label == name && row.ran > 0; }))
             throw Error(ErrorKind::missing, fmt::format("--require-target {0}: no variant was compiled for {0}", name));

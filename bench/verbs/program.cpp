@@ -49,6 +49,13 @@ int end_interrupted()
     return exit_code(ErrorKind::interrupted);
 }
 
+int end_interrupted_with_result(const Options& options)
+{
+    if (options.out)
+        say_when_interrupted(fmt::format("tetrace: interrupted; what ran by then is in '{}'", options.out->string()));
+    return end_interrupted();
+}
+
 std::string words_when_begun(const Options& options)
 {
     const bool is_long = options.verb == Verb::bench || options.verb == Verb::check || options.verb == Verb::render ||

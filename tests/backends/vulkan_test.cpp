@@ -122,6 +122,7 @@ void with_devices_of_all_kinds(const std::function<void(const vulkan::FoundDevic
         for (const bool selects : {false, true})
             for (const unsigned shares : {1u, 2u, 7u, 1000u}) {
                 found.selects_minima = selects;
+                found.reads_texels = selects;
                 found.shares = shares;
                 SCOPED_TRACE(found.facts.name + (selects ? ", selects, " : ", minima, ") + std::to_string(shares));
                 expect_right(found);

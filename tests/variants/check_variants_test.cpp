@@ -204,12 +204,26 @@ TEST_F(CheckVariants, that_a_signal_ends_in_a_reduction_are_a_result)
                                              crashing_at + kernel);
     if (ended.code == 3) GTEST_SKIP() << ended.errors;
     ASSERT_EQ(ended.code, 130) << ended.out << ended.errors;
+    EXPECT_TRUE(contains(ended.errors, "what ran by then is in 'checked.json'")) << ended.errors;
     const auto found = variants();
     const auto& failures = found.at("rows").at(0).at("failures");
     ASSERT_EQ(failures.size(), 1u) << failures;
     EXPECT_EQ(failures.at(0).at("unfinished"), true) << failures;
     EXPECT_TRUE(contains(ended.out, "reduced to fewer than ")) << ended.out;
     EXPECT_TRUE(contains(file("checked.xml"), "<failure")) << file("checked.xml");
+}
+
+TEST_F(CheckVariants, of_a_compiler_that_refuses_the_text_as_it_is_blame_no_change)
+{
+    const Ended refused = run(std::string("CXX=false '") + TETRACE_PROGRAM +
+                                  "' check --backend cuda-host --variants 2 --scene cubes --resolution 4 --size 16 "
+                                  "--views 0 --layout tet80 --method maria --out checked.json",
+                              "/usr/bin/env");
+    EXPECT_EQ(refused.code, 1) << refused.out << refused.errors;
+    const auto row = variants().at("rows").at(0);
+    EXPECT_TRUE(row.at("fails_as_it_is").get<bool>()) << row;
+    EXPECT_TRUE(contains(row.at("reason").get<std::string>(), "not compiled with its text as it is")) << row;
+    EXPECT_TRUE(!row.contains("failures") || row.at("failures").empty()) << row;
 }
 
 TEST(VariantRows, whose_text_as_it_is_fails_fail_the_check)
