@@ -48,8 +48,11 @@ KernelId one_kernel(const Options& options)
             (kernel.math == math || !is_portable(kernel)) && kernel.schedule == Schedule::tiles)
             fitting.push_back(kernel);
     if (fitting.empty())
-        throw Error(ErrorKind::usage, fmt::format("{}: no kernel has method {} and layout {}", name_of(options.verb),
-                                                  join_names(options.methods), join_names(options.layouts)));
+        throw Error(ErrorKind::usage,
+                    fmt::format("{}: no kernel of task trace has {}{}{}", name_of(options.verb),
+                                options.methods.empty() ? "" : "method " + join_names(options.methods),
+                                options.methods.empty() || options.layouts.empty() ? "" : " and ",
+                                options.layouts.empty() ? "" : "layout " + join_names(options.layouts)));
     const auto usual = std::ranges::find_if(fitting, [](const KernelId& kernel) { return is_default(kernel); });
     return usual != fitting.end() ? *usual : fitting.front();
 }

@@ -250,7 +250,9 @@ Pixmap draw_steps(std::span<const StepsImage> images, std::uint32_t width, std::
     std::vector<std::string> titles;
     std::uint32_t column = width, end = 1; // of the scale
     for (const StepsImage& image : images) {
-        const StepSummary summary = summarize_steps(image.hits);
+        std::vector<Hit> counted = image.hits;
+        if (image.has_outside) std::erase_if(counted, [](const Hit& pixel) { return pixel.tet == NO_TET; });
+        const StepSummary summary = summarize_steps(counted);
         titles.push_back(title_of(image, summary));
         column = std::max(column, text_width(titles.back(), scale) + 2 * margin * scale);
         end = std::max(end, summary.top);

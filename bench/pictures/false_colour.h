@@ -49,6 +49,7 @@ struct StepsImage {
     std::vector<Hit> hits; ///< width * height, row after row
     std::string subject;
     std::string what = "steps per ray"; ///< or what else is in the place of hits' steps
+    bool has_outside = false;           ///< pixels without a tet are no part of the summary
 };
 /// The same for several of them side by side: each has its own title, and all have one scale.
 [[nodiscard]] Pixmap draw_steps(std::span<const StepsImage> images, std::uint32_t width, std::uint32_t height);

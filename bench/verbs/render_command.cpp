@@ -101,10 +101,23 @@ void tell_lost_rays(const RowRun& row, std::size_t view, std::span<const Hit> hi
                         row.scene->view_numbers()[view], lost));
 }
 
+/// The task of the rows that cross tets for a picture; none for pictures of hits.
+std::optional<Task> crossing_task(Picture picture)
+{
+    if (picture == Picture::tally) return Task::tally;
+    const CrossedPicture* const crossed = crossed_picture(picture);
+    return crossed != nullptr ? std::optional(crossed->task) : std::nullopt;
+}
+
+bool shows_hits(const Options& options)
+{
+    return std::ranges::any_of(wanted_pictures(options), [](Picture picture) { return !crossing_task(picture); });
+}
+
 /// A scene in each kind of tets asked for, with the row that traces it. Scenes whose tets are their own are one.
 struct Subject {
     std::vector<std::unique_ptr<SceneWork>> scenes;
-    std::vector<RowRun> rows;                          ///< that find hits
+    std::vector<RowRun> rows;                          ///< that find hits, if a picture shows them
     std::map<Task, std::vector<RowRun>> crossing = {}; ///< rows of other tasks, opened when they are needed
 
     [[nodiscard]] const SceneWork& first() const { return *scenes.front(); }
@@ -121,7 +134,7 @@ Subject load_subject(const std::string& name, const Options& options)
         auto scene = std::make_unique<SceneWork>(load_work(scene_requests(one).front(), one));
         const auto is_same = [&](const auto& other) { return other->loaded().hash == scene->loaded().hash; };
         if (std::ranges::any_of(subject.scenes, is_same)) continue;
-        subject.rows.push_back(open_first_row(*scene, one));
+        if (shows_hits(options)) subject.rows.push_back(open_first_row(*scene, one));
         subject.scenes.push_back(std::move(scene));
     }
     return subject;
@@ -132,14 +145,6 @@ std::string title_of(const RowRun& row, std::size_t view, bool names_tets)
     std::string title = fmt::format("{}, view {}", row.scene->label(), row.scene->view_numbers()[view]);
     if (names_tets) title += fmt::format(", {}", name_of(row.scene->loaded().scene.build.optimised.tets));
     return title;
-}
-
-/// The task of the rows that cross tets for a picture; none for pictures of hits.
-std::optional<Task> crossing_task(Picture picture)
-{
-    if (picture == Picture::tally) return Task::tally;
-    const CrossedPicture* const crossed = crossed_picture(picture);
-    return crossed != nullptr ? std::optional(crossed->task) : std::nullopt;
 }
 
 /// Opens the rows of all pictures of what rays cross, before the first picture is written.
@@ -177,7 +182,7 @@ std::vector<StepsImage> tally_all(Subject& subject, std::size_t view)
         const auto tets = tets_on_cut(scene.loaded().scene, scene.views()[view], scene.width(), scene.height());
         images.push_back({tally_at_pixels(tets, sums_of_view(row, view), volumes_of(scene.loaded().scene)),
                           title_of(row, view, rows.size() > 1),
-                          fmt::format("tally of {} rays, % of the mean", name_of(row.key.rays))});
+                          fmt::format("tally of {} rays, % of the mean", name_of(row.key.rays)), true});
     }
     return images;
 }
@@ -223,13 +228,12 @@ void render_subject(Subject& subject, const Options& options, const PictureFiles
     const auto pictures = wanted_pictures(options);
     const SceneWork& scene = subject.first();
     const bool only_picture = only_scene && scene.views().size() == 1 && pictures.size() == 1;
-    refuse_steps_without_tets(subject.rows.front(), pictures);
+    if (!subject.rows.empty()) refuse_steps_without_tets(subject.rows.front(), pictures);
     open_crossing_rows(subject, pictures, options);
     for (std::size_t view = 0; view < scene.views().size(); ++view) {
         progress_line().show("rendering " + scene.label(),
                              static_cast<double>(view) / static_cast<double>(scene.views().size()));
-        const bool shows_hits = std::ranges::any_of(pictures, [](Picture p) { return !crossing_task(p); });
-        const auto images = shows_hits ? trace_all(subject, view) : std::vector<StepsImage>();
+        const auto images = trace_all(subject, view);
         for (const Picture picture : pictures) {
             files.write({scene.label(), scene.view_numbers()[view], picture}, only_picture,
                         crossing_task(picture)

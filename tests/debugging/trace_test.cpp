@@ -112,7 +112,7 @@ TEST_F(Trace, of_a_ray_that_there_is_not_is_refused)
     expect_refused(scene + "--pixel 1,1 --layout embree", "is not one of tetrace's kernels");
     expect_refused(scene + "--pixel 1,1 --method maria,project", "accepts one value");
     expect_refused(scene + "--pixel 1,1 --method maria --layout half32",
-                   "no kernel has method maria and layout half32");
+                   "no kernel of task trace has method maria and layout half32");
     expect_refused(scene + "--pixel 0,0 --rays shadow", "--pixel: 0,0 makes no shadow ray");
     expect_refused(scene + "--pixel 1,1 --rays shadow,ao", "--rays accepts one value");
     expect_refused("--pixel 1,1", "--scene SCENE is missing: which scene?");
