@@ -319,7 +319,8 @@ LoadedScene load_mesh_scene(const SceneRequest& request, const fs::path& mesh, c
     unused.add_resolution();
     unused.tell(request.name, "it is made of a mesh, and only cubes have a resolution", loaded);
     Unused optimiser{request.build, {}};
-    if (!loaded.scene.source_tets.empty() && !request.build.optimise_own && request.build.effort != unused.standard.effort)
+    if (!loaded.scene.source_tets.empty() && !request.build.optimise_own &&
+        request.build.effort != unused.standard.effort)
         optimiser.options.emplace_back("--effort");
     optimiser.tell(request.name, "the tets of its file are kept without --tets rays", loaded);
     return loaded;
