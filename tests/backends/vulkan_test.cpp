@@ -173,6 +173,46 @@ TEST_F(Vulkan, hits_of_bvhs_are_openmps_whatever_kind_of_device_it_is)
     }
 }
 
+TEST_F(Vulkan, nearer_of_two_layers_is_openmps_in_the_form_of_gpus)
+{
+    TriangleMesh mesh; // two layers of 3 x 3 squares that cross, within three units in the last place of each other
+    for (const int layer : {0, 1}) {
+        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < 4; ++j)
+                mesh.vertices.push_back({0.25F * static_cast<float>(i) - 0.375F, 0.25F * static_cast<float>(j) - 0.375F,
+                                         0.5F + static_cast<float>(layer * (i - j)) * 0x1p-23F});
+        for (std::uint32_t square = 0; square < 9; ++square) {
+            const std::uint32_t corner = first + square / 3 * 4 + square % 3;
+            mesh.triangles.push_back({corner, corner + 1, corner + 4});
+            mesh.triangles.push_back({corner + 1, corner + 5, corner + 4});
+        }
+    }
+    RaySet set{RayKind::random, RayOrder::tiles, false, 0, TILE_WIDTH, {}};
+    for (std::uint32_t number = 0; number < 64; ++number) {
+        const float x = static_cast<float>(number % 8) * 0.09F - 0.33F,
+                    y = static_cast<float>(number / 8) * 0.09F - 0.32F;
+        const Float3 direction{0.25F - x, 0.125F + y, -0.5F};
+        const Float3 origin = snap_to_grid(Float3{x - 2 * direction.x, y - 2 * direction.y, 1.5F});
+        set.rays.push_back({origin, direction, NO_END, NO_HALF_FACE, FREE_FACE, number});
+    }
+    const auto quads = given_quads_offset(set, mesh);
+    const TraceJob job = given_job(set.rays.size(), 0, false);
+    for (const Layout layout : {Layout::bvh2, Layout::bvh4, Layout::cwbvh}) {
+        const KernelId kernel = bvh_kernel(layout, Task::rays);
+        const PackedScene packed = make_bvh_scene(mesh, layout);
+        const auto on_host = openmp_backend().open(0, kernel, {&mesh, &packed}, {.threads = 1});
+        on_host->set_rays(quads);
+        for (vulkan::FoundDevice found : vulkan::find_devices()) {
+            if (!found.facts.usable) continue;
+            found.reads_texels = false;
+            vulkan::VulkanSession session(found, kernel, packed, {});
+            session.set_rays(quads);
+            EXPECT_EQ(different_rays(traced(session, job), traced(*on_host, job), 3), 0u) << name_of(layout);
+        }
+    }
+}
+
 TEST_F(Vulkan, hits_of_bvhs_are_openmps_however_much_of_a_stack_is_in_the_groups_memory)
 {
     for (const Layout layout : {Layout::bvh2, Layout::bvh4, Layout::cwbvh}) {
