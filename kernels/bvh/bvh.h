@@ -116,8 +116,8 @@ KERNEL_FN Nearest nearer_triangle(SceneView scene, FRAME frame, Nearest nearest,
 
 KERNEL_FN Hit hit_of(SceneView scene, Ray ray, Nearest nearest)
 {
-    if (nearest.triangle == NO_HIT || (DEFERS_TIES && nearest.triangle == DEFERRED))
-        return make_no_hit(nearest.triangle, NO_TET, 0u);
+    const uint other_end = DEFERS_TIES ? DEFERRED : NO_HIT; // no constant operand of ||, of which PoCL's compiler warns
+    if (nearest.triangle == NO_HIT || nearest.triangle == other_end) return make_no_hit(nearest.triangle, NO_TET, 0u);
     uint4 r0 = FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * nearest.at);
     uint4 r1 = FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * nearest.at + 1u);
     uint4 r2 = FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * nearest.at + 2u);

@@ -67,6 +67,21 @@ TEST_F(Opencl, hits_of_bvhs_are_openmps_however_much_of_a_stack_is_in_the_groups
     }
 }
 
+TEST_F(Opencl, compilers_warn_of_no_kernel) // PoCL writes the number of its warnings into the user's table
+{
+    for (const std::size_t device : usable)
+        for (const KernelId& kernel : {KernelId{.method = Method::maria, .layout = Layout::tet80},
+                                       KernelId{.method = Method::project, .layout = Layout::half32},
+                                       KernelId{.method = Method::project, .layout = Layout::tet64},
+                                       KernelId{.method = Method::single, .layout = Layout::bvh2},
+                                       KernelId{.method = Method::single, .layout = Layout::bvh4},
+                                       KernelId{.method = Method::single, .layout = Layout::cwbvh}})
+            for (const bool starts_outside : {true, false}) {
+                const std::string messages = backend.compiled(device, kernel, starts_outside, {}).messages;
+                EXPECT_EQ(messages.find("warning"), std::string::npos) << name_of(kernel) << ": " << messages;
+            }
+}
+
 TEST_F(Opencl, survives_a_damaged_program_cache_and_mends_it)
 {
     const DeviceRays rays(make_cubes(3), Layout::tet80);
