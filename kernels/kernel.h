@@ -10,7 +10,7 @@
 // STACK_TOP, STACK_ENTRIES, GROUP_ITEMS           host or entry file           stack.h, dialects
 // DEFERS_TIES                                     entry file                   entry_on_path.h, walk_*.h, bvh.h
 // KEEP_BRANCH, MAYBE_UNUSED, PRECISE, ...         dialect                      walk_by_records.h, bvh/
-// HOST_SSE2                                       openmp/kernel.cpp            bvh/
+// HOST_SSE2                                       openmp/kernel.cpp            bvh/, next_face_predicted.h
 // LANES_VOTE                                      dialect_cuda.h               structure_bvh.h, cwbvh.h
 // HAS_RECORDS, RECORD_EXITS, RecordExits          half32.h, tet64.h            structure_cdt.h, walk_by_records.h
 // EXIT_REPLACING                                  half32.h, tet64.h            walk_by_records.h

@@ -14,7 +14,7 @@
 #include <cstdint>
 #if defined(__SSE2__) && !defined(COUNTS_VISITS)
 #include <immintrin.h>
-#define HOST_SSE2 // BVHs have a form for such processors
+#define HOST_SSE2 // BVHs and walks by records have a form for such processors
 #endif
 
 namespace {

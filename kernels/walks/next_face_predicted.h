@@ -1,6 +1,10 @@
 // next_face() of walk_by_records.h for processors: what a branch decides is predicted, so the next record is loaded
 // before it is known; a select would wait for it (docs/spec/devices.md, W10).
 
+#ifdef HOST_SSE2
+#include "kernels/walks/prefetch_sse2.h"
+#endif
+
 // replaced: constant, so that what depends on it is, too.
 KERNEL_FN Walker walker_replacing(MAYBE_UNUSED SceneView scene, RecordExits exits, Walker at, Carried apex,
                                   uint replaced)
@@ -16,6 +20,9 @@ KERNEL_FN Walker next_face(SceneView scene, Ray ray, Shear shear, Walker at)
     uint record = record_across(at.exit);
     Carried apex = carried(ray, shear, record_apex(scene, record));
     RecordExits exits = RECORD_EXITS(scene, record);
+#ifdef HOST_SSE2
+    prefetch_next(scene, record, exits);
+#endif
     Walker next = at;
     next.rotation = rotation_at(at.rotation, at.exit);
     next.before = at.exit;
