@@ -119,7 +119,6 @@ Owned<EventHandle> make_event(Context& context, unsigned flags = 0)
 
 void SideStreams::fork(std::size_t streams)
 {
-    streams = std::min(streams, max_streams);
     if (streams < 2) return;
     if (forked_ == nullptr) forked_ = make_event(context_, without_timing);
     while (sides_.size() < streams - 1)

@@ -72,8 +72,7 @@ public:
     static constexpr std::size_t max_streams = 8;
 
     SideStreams(Context& context, StreamHandle main) : context_(context), main_(main) {}
-    /// Makes that many streams, the main one included, wait for what the main one has been given so far; at most
-    /// max_streams of them.
+    /// Makes that many streams, the main one included, wait for what the main one has been given so far.
     void fork(std::size_t streams);
     /// Where the work of that number goes, until join() is called.
     [[nodiscard]] StreamHandle stream(std::size_t work) const;

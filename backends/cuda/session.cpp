@@ -31,7 +31,7 @@ CudaSession::CudaSession(const Driver& driver, Ordinal device, const Programs& p
       program_(load_program(device_.context, device_.capability, programs, program_of(kernel), options.program_cache)),
       task_(kernel.task), schedule_(kernel.schedule), stack_bytes_(stack_bytes_of_item(kernel.layout)),
       outside_(entry(device, entry_name(kernel, true))), inside_(entry(device, entry_name(kernel, false))),
-      domain_(domain_of(scene)), timer_(device_.context), sides_(device_.context, device_.stream.get()),
+      domain_(domain_of(scene)), timer_(device_.context), outputs_(device_.context, device_.stream.get()),
       tile_height_(tile_height), threads_(options.threads), max_buffer_bytes_(options.max_buffer_bytes),
       launches_(tile_height), bytes_(scene.bytes())
 {
@@ -105,7 +105,7 @@ void CudaSession::poison_output(std::size_t words)
 void CudaSession::start(std::span<const TraceJob> jobs)
 {
     make_current();
-    sides_.join(); // of a launch that failed
+    join_streams(); // of a launch that failed
     launched_tiles_ = 0;
     parts_ = output_parts(words_per_ray(task_));
     poison_output(parts_.words());
@@ -115,7 +115,14 @@ void CudaSession::start(std::span<const TraceJob> jobs)
     launches_.start(
         launch_params(jobs, domain_, tile_height_, TetParts{}.log2_bytes), jobs.front().passes,
         [this](std::span<const LaunchPiece> pieces, std::uint32_t passes) { start_launch(pieces, passes); },
-        [this] { finish_launch(); });
+        [this] { finish_launch(); }, jobs.front().in_flight);
+}
+
+void CudaSession::join_streams()
+{
+    for (SideStreams& sides : sides_)
+        sides.join();
+    outputs_.join();
 }
 
 void CudaSession::start_launch(std::span<const LaunchPiece> pieces, std::uint32_t passes)
@@ -124,16 +131,25 @@ void CudaSession::start_launch(std::span<const LaunchPiece> pieces, std::uint32_
     if (schedule_ == Schedule::persistent) clear_counters(passes * pieces.size());
     Address counter = counters_.address();
     timer_.start(device_.stream.get());
+    outputs_.fork(launches_.in_flight());
+    while (sides_.size() < launches_.in_flight())
+        sides_.emplace_back(device_.context, outputs_.stream(sides_.size()));
+    const std::size_t streams = std::min(pieces.size(), SideStreams::max_streams / launches_.in_flight());
     for (std::uint32_t pass = 0; pass < passes; ++pass) {
-        sides_.fork(pieces.size());
-        for (std::size_t i = 0; i < pieces.size(); ++i, counter += sizeof(std::uint32_t)) {
+        SideStreams& sides = sides_[launches_.output_of(pass)]; // whose main stream has the pass so many before it
+        sides.fork(streams);
+        std::size_t i = 0;
+        for (const LaunchPiece& piece : launches_.of_pass(pieces, pass)) {
+            const StreamHandle stream = sides.stream(i++);
             if (schedule_ == Schedule::persistent)
-                launch_persistent(pieces[i], counter, sides_.stream(i));
+                launch_persistent(piece, counter, stream);
             else
-                launch_tiles(pieces[i], sides_.stream(i));
+                launch_tiles(piece, stream);
+            counter += sizeof(std::uint32_t);
         }
-        sides_.join();
+        sides.join();
     }
+    join_streams();
     timer_.stop(device_.stream.get());
     launched_tiles_ = tile_count(pieces);
     launched_passes_ = passes;
@@ -150,7 +166,7 @@ void CudaSession::launch_tiles(const LaunchPiece& piece, StreamHandle stream)
     Address output = output_of(piece.job), rays = rays_.address();
     void* parameters[] = {scene_.data(), &launch, &output, &rays}; // the last one is of tasks with given rays
     const unsigned threads = TILE_WIDTH * tile_height_;
-    device_.launch(entries_[piece.job].function, piece.tiles, threads, parameters, stack_bytes_ * threads, stream);
+    device_.launch(entry_of(piece).function, piece.tiles, threads, parameters, stack_bytes_ * threads, stream);
 }
 
 void CudaSession::launch_persistent(const LaunchPiece& piece, Address counter, StreamHandle stream)
@@ -161,7 +177,7 @@ void CudaSession::launch_persistent(const LaunchPiece& piece, Address counter, S
     void* parameters[] = {scene_.data(), &launch, &output, &counter, &tiles, &rays}; // the last one is of task rays
     const std::uint32_t items = tiles * TILE_WIDTH * tile_height_;
     const unsigned blocks = (items + persistent_block_threads - 1) / persistent_block_threads;
-    const Entry& entry = entries_[piece.job];
+    const Entry& entry = entry_of(piece);
     device_.launch(entry.function, std::min(blocks, entry.resident_blocks), persistent_block_threads, parameters,
                    stack_bytes_ * persistent_block_threads, stream);
 }

@@ -3,6 +3,7 @@
 #include "backends/cuda/device.h"
 #include "core/device/launch.h"
 
+#include <deque>
 #include <vector>
 
 namespace tetrace::cuda {
@@ -27,6 +28,7 @@ private:
     void upload(const PackedScene& scene);
     void poison_output(std::size_t words);
     void start_launch(std::span<const LaunchPiece> pieces, std::uint32_t passes);
+    void join_streams();
     void launch_tiles(const LaunchPiece& piece, StreamHandle stream);
     void launch_persistent(const LaunchPiece& piece, Address counter, StreamHandle stream);
     void clear_counters(std::size_t count);
@@ -36,6 +38,10 @@ private:
         FunctionHandle function;
         unsigned resident_blocks; ///< as many as the device holds at once
     };
+    [[nodiscard]] const Entry& entry_of(const LaunchPiece& piece) const
+    {
+        return entries_[piece.job % entries_.size()];
+    }
     [[nodiscard]] Entry entry(Ordinal device, const std::string& name);
     /// Waits for the current launch, if any, and counts its time.
     void finish_launch();
@@ -53,7 +59,8 @@ private:
     Memory output_, rays_;
     Memory counters_; ///< of persistent threads: the rays that each piece of each pass has taken
     EventTimer timer_;
-    SideStreams sides_;
+    SideStreams outputs_;           ///< a stream for each output of passes that are in flight together
+    std::deque<SideStreams> sides_; ///< of each of these streams, for the pieces of a pass
     unsigned tile_height_, threads_;
     std::uint64_t max_buffer_bytes_;
     Launches launches_;

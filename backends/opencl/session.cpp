@@ -155,14 +155,20 @@ std::size_t OpenclSession::groups_for(std::uint32_t tiles) const
     return std::min<std::size_t>(tiles, resident);
 }
 
+void OpenclSession::require_queues(std::size_t queues, std::size_t counters)
+{
+    while (counters_.size() < counters)
+        counters_.push_back(make_buffer(context_->handle(), CL_MEM_READ_WRITE, sizeof(cl_uint)));
+    while (queues_.size() < queues)
+        queues_.push_back(context_->make_queue());
+}
+
 /// Persistent groups count tiles: their counters are filled before each pass, which is not a part of its time.
 void OpenclSession::enqueue(std::span<const LaunchPiece> pieces, std::uint32_t passes)
 {
+    if (launches_.in_flight() > 1) return enqueue_in_flight(pieces, passes);
     const bool is_persistent = kernel_id_.schedule == Schedule::persistent;
-    while (counters_.size() < pieces.size())
-        counters_.push_back(make_buffer(context_->handle(), CL_MEM_READ_WRITE, sizeof(cl_uint)));
-    while (queues_.size() < std::min(pieces.size(), max_queues))
-        queues_.push_back(context_->make_queue());
+    require_queues(std::min(pieces.size(), max_queues), pieces.size());
     for (std::uint32_t pass = 0; pass < passes; ++pass) {
         for (std::size_t i = 0; is_persistent && i < pieces.size(); ++i)
             queues_[0].enqueueFillBuffer(counters_[i], pieces[i].params.first_tile, 0, sizeof(cl_uint));
@@ -172,21 +178,53 @@ void OpenclSession::enqueue(std::span<const LaunchPiece> pieces, std::uint32_t p
         if (pieces.size() > 1)
             enqueue_together(pieces, is_timed ? &events : nullptr);
         else
-            enqueue_piece(pieces.front(), 0, {}, is_timed ? &events.emplace_back() : nullptr);
+            enqueue_piece(pieces.front(), 0, queues_[0], {}, is_timed ? &events.emplace_back() : nullptr);
     }
 }
 
-void OpenclSession::enqueue_piece(const LaunchPiece& piece, std::size_t number, const std::vector<cl::Event>& after,
-                                  cl::Event* event)
+void OpenclSession::enqueue_piece(const LaunchPiece& piece, std::size_t counter, cl::CommandQueue& queue,
+                                  const std::vector<cl::Event>& after, cl::Event* event)
 {
-    kernel_.setArg(counter_argument, counters_[number]);
+    kernel_.setArg(counter_argument, counters_[counter]);
     kernel_.setArg(launch_argument, piece.params);
     kernel_.setArg(end_tile_argument, piece.params.first_tile + piece.tiles);
     kernel_.setArg(output_argument, outputs_[piece.job]);
     const std::size_t group_items = std::size_t{TILE_WIDTH} * tile_height_;
-    queues_[number % queues_.size()].enqueueNDRangeKernel(kernel_, cl::NullRange,
-                                                          cl::NDRange(groups_for(piece.tiles) * group_items),
-                                                          cl::NDRange(group_items), &after, event);
+    queue.enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(groups_for(piece.tiles) * group_items),
+                               cl::NDRange(group_items), &after, event);
+}
+
+/// Each output has queues of its own. The counters of persistent groups are filled while other passes run: that is a
+/// part of the time.
+void OpenclSession::enqueue_in_flight(std::span<const LaunchPiece> pieces, std::uint32_t passes)
+{
+    const std::size_t outputs = launches_.in_flight(), width = std::min(pieces.size(), max_queues / outputs);
+    require_queues(outputs * width, outputs * pieces.size());
+    std::vector<cl::Event> forked(1);
+    queues_[0].enqueueMarkerWithWaitList(nullptr, &forked[0]);
+    queues_[0].flush();
+    std::vector ended(outputs, forked); // what the next pass of each output waits for
+    enqueued_.push_back({tile_count(pieces), passes, {}});
+    std::vector<cl::Event>& timed = enqueued_.back().events;
+    for (std::uint32_t pass = 0; pass < passes; ++pass) {
+        const std::size_t output = launches_.output_of(pass);
+        const std::vector<LaunchPiece> own = launches_.of_pass(pieces, pass);
+        std::vector<cl::Event> events(own.size());
+        for (std::size_t i = 0; i < own.size(); ++i) {
+            const std::size_t counter = output * own.size() + i;
+            cl::CommandQueue& queue = queues_[output * width + i % width];
+            if (kernel_id_.schedule == Schedule::persistent)
+                queue.enqueueFillBuffer(counters_[counter], own[i].params.first_tile, 0, sizeof(cl_uint),
+                                        &ended[output]);
+            enqueue_piece(own[i], counter, queue, ended[output], &events[i]);
+        }
+        for (std::size_t i = 0; i < width; ++i)
+            queues_[output * width + i].flush();
+        if (pass < outputs || pass + outputs >= passes) timed.insert(timed.end(), events.begin(), events.end());
+        ended[output] = std::move(events);
+    }
+    for (const std::vector<cl::Event>& last : ended)
+        queues_[0].enqueueBarrierWithWaitList(&last);
 }
 
 /// A queue waits for another's events only if that one has been flushed.
@@ -196,7 +234,7 @@ void OpenclSession::enqueue_together(std::span<const LaunchPiece> pieces, std::v
     queues_[0].enqueueMarkerWithWaitList(nullptr, &forked[0]);
     queues_[0].flush();
     for (std::size_t i = 0; i < pieces.size(); ++i)
-        enqueue_piece(pieces[i], i, forked, &ended[i]);
+        enqueue_piece(pieces[i], i, queues_[i % queues_.size()], forked, &ended[i]);
     for (cl::CommandQueue& queue : queues_)
         queue.flush();
     queues_[0].enqueueBarrierWithWaitList(&ended);
@@ -214,7 +252,7 @@ void OpenclSession::start(std::span<const TraceJob> jobs)
         launches_.start(
             launch_params(jobs, domain_, tile_height_, tet_parts_.log2_bytes), jobs.front().passes,
             [this](std::span<const LaunchPiece> pieces, std::uint32_t passes) { enqueue(pieces, passes); },
-            [this] { take_times(); });
+            [this] { take_times(); }, jobs.front().in_flight);
         queues_[0].flush();
     });
 }

@@ -34,11 +34,14 @@ private:
     void set_arguments();
     void resize_output(const OutputParts& parts);
     void enqueue(std::span<const LaunchPiece> pieces, std::uint32_t passes);
-    /// number: of the piece in its launch, which decides its queue. event: for the kernel's times, or null.
-    void enqueue_piece(const LaunchPiece& piece, std::size_t number, const std::vector<cl::Event>& after,
-                       cl::Event* event);
+    /// counter: the number of its counter. event: for the kernel's times, or null.
+    void enqueue_piece(const LaunchPiece& piece, std::size_t counter, cl::CommandQueue& queue,
+                       const std::vector<cl::Event>& after, cl::Event* event);
     /// All pieces together. events: gets their events, or null.
     void enqueue_together(std::span<const LaunchPiece> pieces, std::vector<cl::Event>* events);
+    /// Passes that are in flight together.
+    void enqueue_in_flight(std::span<const LaunchPiece> pieces, std::uint32_t passes);
+    void require_queues(std::size_t queues, std::size_t counters);
     [[nodiscard]] std::size_t groups_for(std::uint32_t tiles) const;
     /// Waits for enqueued work, and counts its times.
     void take_times();
@@ -70,9 +73,10 @@ private:
     std::vector<cl::Buffer> arrays_;                   ///< by binding
     std::array<cl::Buffer, MAX_TET_PARTS> more_parts_; ///< from 1 on; 0 is arrays_[0]
     cl::Buffer output_, rays_;
-    OutputParts parts_;                ///< of output_
-    std::vector<cl::Buffer> outputs_;  ///< of each job, in output_
-    std::vector<cl::Buffer> counters_; ///< of persistent groups: the tiles that each piece of a launch has taken
+    OutputParts parts_;               ///< of output_
+    std::vector<cl::Buffer> outputs_; ///< of each job, in output_
+    std::vector<cl::Buffer>
+        counters_; ///< of persistent groups: the tiles that each piece of a launch has taken, for each output
     std::vector<Enqueued> enqueued_;
 };
 

@@ -280,15 +280,18 @@ void VulkanSession::enqueue(std::span<const LaunchPiece> pieces, std::uint32_t p
         commands.fillBuffer(output_.handle(), 0, VK_WHOLE_SIZE, POISON);
         record_barrier(context_, commands);
     }
-    record_begin_time(commands, times);
+    const std::uint32_t in_flight = launches_.in_flight();
     for (std::uint32_t pass = 0; pass < passes; ++pass) {
-        if (pass > 0) record_barrier(context_, commands); // else passes may run at once
-        if (leaves_rays()) record_none_left(commands, pieces);
-        for (const LaunchPiece& piece : pieces) {
+        order_.record_begin(commands, pass, in_flight);
+        if (pass == 0) record_begin_time(commands, times);
+        const std::vector<LaunchPiece> own = launches_.of_pass(pieces, pass);
+        if (leaves_rays()) record_none_left(commands, own);
+        for (const LaunchPiece& piece : own) {
             programs_.front().record(commands, piece.job);
             record_dispatches(commands, piece.params, piece.tiles);
         }
-        if (leaves_rays()) record_left(commands, pieces);
+        if (leaves_rays()) record_left(commands, own);
+        order_.record_end(commands, pass, in_flight);
     }
     record_end_time(commands, times);
     record_barrier(context_, commands);
@@ -349,7 +352,7 @@ void VulkanSession::start(std::span<const TraceJob> jobs)
         launches_.start(
             launch_params(jobs, domain_, tile_height_, tet_parts_.log2_bytes), jobs.front().passes,
             [this](std::span<const LaunchPiece> pieces, std::uint32_t passes) { enqueue(pieces, passes); },
-            [this] { take_times(); });
+            [this] { take_times(); }, jobs.front().in_flight);
     });
 }
 

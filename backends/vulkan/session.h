@@ -1,5 +1,6 @@
 #pragma once
 
+#include "backends/vulkan/pass_order.h"
 #include "backends/vulkan/program.h"
 #include "backends/vulkan/rt/acceleration.h"
 #include "core/device/launch.h"
@@ -101,6 +102,7 @@ private:
         std::uint32_t tiles, passes;
     };
     std::vector<Enqueued> enqueued_;
+    PassOrder order_{context_};
     Launches launches_;
 };
 

@@ -33,7 +33,7 @@ const RowRecord* find_reference(const std::vector<RowRecord>& rows, const std::v
     const RowRecord* first = nullptr;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const RowRecord& other = rows[i];
-        if (hardware[i] != hardware[index] || !same_work(row.key, other.key) || other.key.threads != row.key.threads ||
+        if (hardware[i] != hardware[index] || !same_work(row.key, other.key) || !same_load(row.key, other.key) ||
             other.key.kernel.schedule != Schedule::tiles || !figures_of(other))
             continue;
         if (other.key.backend == preferred) return &other;
@@ -69,8 +69,9 @@ std::string interval_text(const Comparison& comparison)
 
 namespace {
 
-/// The device of a contest: its hardware, and the API too if that is emulated; and how many threads use it.
-using Place = std::tuple<DeviceKind, std::size_t, std::string, unsigned>;
+/// The device of a contest: its hardware, and the API too if that is emulated; how many threads use it, and how many
+/// launches are in flight on it.
+using Place = std::tuple<DeviceKind, std::size_t, std::string, unsigned, unsigned>;
 
 /// Empty if nothing is known. A row whose scene could not be loaded has no device.
 std::optional<Place> place_of(const RowRecord& row, std::size_t hardware)
@@ -78,10 +79,11 @@ std::optional<Place> place_of(const RowRecord& row, std::size_t hardware)
     const RowKey& key = row.key;
     if (row.device.name.empty()) {
         if (!on_reference(key) && !is_embree(key.kernel.layout)) return std::nullopt;
-        return Place{DeviceKind::cpu, std::numeric_limits<std::size_t>::max(), {}, key.threads};
+        return Place{DeviceKind::cpu, std::numeric_limits<std::size_t>::max(), {}, key.threads, key.in_flight};
     }
     const bool is_emulated = row.device.kind == DeviceKind::emulated;
-    return Place{row.device.kind, hardware, is_emulated ? device_label(key) : std::string(), key.threads};
+    return Place{row.device.kind, hardware, is_emulated ? device_label(key) : std::string(), key.threads,
+                 key.in_flight};
 }
 
 TotalCost total_cost(const SetupCost& cost, double mrays_per_s)

@@ -27,15 +27,16 @@ void add_wall(Figures& figures, const RowRecord& row)
     figures.overhead_s = quantile(std::move(overheads), 0.5);
 }
 
-/// Empty unless views had a launch each.
+/// Empty unless views had a launch each. The line through both needs launches that follow each other.
 void add_latency(Figures& figures, const RowRecord& row)
 {
     const auto& [joined, single] = row.launches;
-    const std::vector<double>& samples_s = joined == single ? row.samples_s : row.latency_samples_s;
+    const std::vector<double>& samples_s = has_latency(row) ? row.samples_s : row.latency_samples_s;
     if (samples_s.empty() || single == 0) return;
     const double pass_s = quantile(samples_s, 0.5), mrays = 1e-6 * static_cast<double>(traced(row)->totals.rays);
     figures.latency_s = pass_s / single;
     figures.latency_mrays_per_s = mrays / pass_s;
+    if (row.key.in_flight > 1) return;
     const LaunchLine line =
         launch_line({static_cast<double>(joined), row.samples_s}, {static_cast<double>(single), samples_s}, mrays);
     figures.fixed_s = line.fixed_s;
@@ -115,7 +116,7 @@ std::optional<double> ratio_to_single(const RowRecord& row, const std::vector<Ro
     double fastest = 0;
     for (const RowRecord& other : rows)
         if (is_embree(other.key.kernel.layout) && other.key.kernel.method == Method::single &&
-            same_rays(other.key, row.key) && other.key.threads == row.key.threads)
+            same_rays(other.key, row.key) && same_load(other.key, row.key))
             if (const auto single = figures_of(other)) fastest = std::max(fastest, single->mrays_per_s);
     if (!figures || fastest == 0) return std::nullopt;
     return figures->mrays_per_s / fastest;

@@ -34,30 +34,52 @@ void set_counters(benchmark::State& state, const RowRun& row)
     state.counters["Mrays/s"] = 1e-6 * static_cast<double>(traced(row)->totals.rays) / row.samples_s.back();
 }
 
-/// The launches of a row that trace these batches of views. Their answers are given to `see`, which may be empty.
-Pass pass_of(RowRun& row, const std::vector<ViewBatch>& batches,
-             std::function<void(const ViewBatch&, std::span<const Hit>)> see = {})
+/// What launches of a row have answered: to the views of a batch, in an output of the row's launches in flight.
+struct Answers {
+    const ViewBatch* views;
+    std::size_t output;
+    std::span<const Hit> hits;
+};
+using SeeAnswers = std::function<void(const Answers&)>;
+
+/// The launches of a row that trace these batches of views, one after the other. Their answers are given to `see`,
+/// which may be empty.
+Pass pass_of(RowRun& row, const std::vector<ViewBatch>& batches, SeeAnswers see = {})
 {
     Pass pass{&row, batches.size(), [&](std::size_t launch) { return prepare_batch(row, batches[launch]); }};
     if (see)
-        pass.after = [&row, &batches, see = std::move(see)](std::size_t launch) {
-            std::vector<Hit> hits(ray_count(row, batches[launch]), Hit{POISON, POISON, 0, 0, 0, 0});
+        pass.after = [&row, &batches, see = std::move(see)](std::size_t launch, std::size_t outputs) {
+            const std::size_t rays = ray_count(row, batches[launch]);
+            std::vector<Hit> hits(outputs * rays, Hit{POISON, POISON, 0, 0, 0, 0});
             row.session->read_back(hits);
-            see(batches[launch], hits);
+            for (std::size_t output = 0; output < outputs; ++output)
+                see({&batches[launch], output, std::span(hits).subspan(output * rays, rays)});
         };
     return pass;
 }
 
-/// A device that answers differently under repetition, or to jobs in flight together, must lose its rate.
-void check_hits(const RowRun& row, const ViewBatch& views, std::span<const Hit> hits)
+/// The launches of the row's samples.
+Pass sample_pass(RowRun& row, SeeAnswers see = {})
 {
+    Pass pass = pass_of(row, row.batches, std::move(see));
+    pass.in_flight = row.key.in_flight;
+    return pass;
+}
+
+/// A device that answers differently under repetition, or to jobs and launches in flight together, must lose its rate.
+void check_hits(const RowRun& row, const Answers& answers)
+{
+    std::span<const Hit> hits = answers.hits;
     if (traits_of(row.key.kernel.task).tallies) require_total(row.session->tally(), hits);
-    for (const std::size_t view : views) {
+    for (const std::size_t view : *answers.views) {
         const auto of_view = hits.first(ray_count(row, view));
         hits = hits.subspan(of_view.size());
-        if (hash_of(of_view) != traced(row)->view_hashes.at(view))
-            throw Error(ErrorKind::internal, fmt::format("the hits of view {} changed between verifying and measuring",
-                                                         row.scene->view_numbers()[view]));
+        if (hash_of(of_view) == traced(row)->view_hashes.at(view)) continue;
+        const std::string output = row.key.in_flight == 1 ? std::string()
+                                                          : fmt::format(" in output {} of {} launches in flight",
+                                                                        answers.output + 1, row.key.in_flight);
+        throw Error(ErrorKind::internal, fmt::format("the hits of view {}{} changed between verifying and measuring",
+                                                     row.scene->view_numbers()[view], output));
     }
 }
 
@@ -75,7 +97,7 @@ void join_views_of(std::vector<RowRun>& rows)
     for (std::size_t i = 0; i < rows.size(); ++i) {
         RowRun& row = rows[i];
         if (!is_timed(row)) continue;
-        row.batches = joined_views(row, batch_limit(row, timed[hardware[i]]));
+        row.batches = joined_views(row, batch_limit(row, timed[hardware[i]]) / row.key.in_flight);
         row.launches = {static_cast<std::uint32_t>(row.batches.size()),
                         static_cast<std::uint32_t>(single_views(row).size())};
     }
@@ -83,19 +105,25 @@ void join_views_of(std::vector<RowRun>& rows)
 
 /// Verification has already paid the costs of a row's first passes: compiling at the first launch, finding the launch
 /// size, touching memory. One more pass just before the samples wakes the device up, shows what a sample costs, and
-/// times the download. A GPU gets a joined one too, which finds the size of joined launches.
+/// times the download. A GPU gets a joined one too, which finds the size of joined launches. Launches in flight
+/// together have not been verified yet.
 void warm_up(RowRun& row, const Sampler& sampler, Budget& budget, const std::function<void(double)>& tell_progress)
 {
     guarded(row, [&] {
         const std::vector<ViewBatch> views = single_views(row);
         double download_s = 0;
-        Pass pass = pass_of(row, views,
-                            [&](const ViewBatch&, std::span<const Hit>) { download_s += row.session->download_s(); });
+        Pass pass = pass_of(row, views, [&](const Answers&) { download_s += row.session->download_s(); });
         pass.tell_progress = tell_progress;
         LaunchTimes times = run_pass(pass, 1, budget.clock());
         std::get<Traced>(row.outcome).download_s = download_s;
         budget.traced(row, row.scene->views().size(), times.wall_s);
-        if (!runs_on_host(row.device)) times = run_pass(pass_of(row, row.batches), 1, budget.clock());
+        if (!runs_on_host(row.device)) times = run_pass(sample_pass(row), 1, budget.clock());
+        if (row.key.in_flight > 1) {
+            const auto check = [&](const Answers& answers) { check_hits(row, answers); };
+            times = run_pass(sample_pass(row, check), row.key.in_flight, budget.clock());
+            times.kernel_s /= row.key.in_flight;
+            times.wall_s /= row.key.in_flight;
+        }
         sampler.warmed_up(row, times.kernel_s);
         row.warm_s = times.wall_s + (row.passes > 1 ? row.passes * times.kernel_s : 0);
     });
@@ -125,7 +153,7 @@ TimedPart warm_up_rows(std::vector<RowRun>& rows, unsigned samples, const Sample
     for (const RowRun& row : rows) {
         if (!is_timed(row)) continue;
         part.sweep_s += row.warm_s;
-        if (row.launches.joined < row.launches.single)
+        if (!has_latency(row))
             part.latency_s += latency_passes(samples, row.passes) * row.warm_s / (row.passes > 1 ? row.passes + 1 : 1);
     }
     return part;
@@ -216,14 +244,12 @@ RowSamples take_sample(RowRun& row, const Sweep& sweep)
     };
     const std::size_t taken = samples_in_run(row);
     Pass pass = taken + 1 < sweep.target(row)
-                    ? pass_of(row, row.batches)
-                    : pass_of(row, row.batches,
-                              [&](const ViewBatch& views, std::span<const Hit> hits) { check_hits(row, views, hits); });
+                    ? sample_pass(row)
+                    : sample_pass(row, [&](const Answers& answers) { check_hits(row, answers); });
     pass.tell_progress = tell;
     RowSamples sample;
     sweep.sampler->take(pass, sample);
-    const bool has_latency = row.launches.joined == row.launches.single; // its samples have a launch for each view
-    if (!has_latency && taken < latency_passes(sweep.samples, row.passes)) {
+    if (!has_latency(row) && taken < latency_passes(sweep.samples, row.passes)) {
         const std::vector<ViewBatch> views = single_views(row);
         Pass alone = pass_of(row, views);
         alone.tell_progress = tell;

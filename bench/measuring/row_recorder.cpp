@@ -228,7 +228,7 @@ void RowRecorder::time_group(const std::vector<RowRun*>& group, std::size_t part
             ImageRecord& record = records_[index_of(*pass.row)];
             // A device that answers differently under repetition must lose its rate.
             if (sample + 1 == samples_)
-                pass.after = [&](std::size_t) {
+                pass.after = [&](std::size_t, std::size_t) {
                     if (hash_of_answers(*pass.row, part) != record.verdict.hit_hash)
                         throw Error(ErrorKind::wrong_result,
                                     fmt::format("the answers of {} changed while they were timed", name_of_part(part)));

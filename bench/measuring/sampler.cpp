@@ -36,14 +36,16 @@ LaunchTimes run_pass(const Pass& pass, std::uint32_t passes, const Clock& clock,
         // Not inside a timed interval: a sample may take minutes, and drawing adds nothing to a row's time.
         pass.tell_progress(static_cast<double>(launch) / static_cast<double>(pass.launches));
         std::vector<TraceJob> jobs = pass.prepare(launch);
-        for (TraceJob& job : jobs)
+        for (TraceJob& job : jobs) {
             job.passes = passes;
+            job.in_flight = pass.in_flight;
+        }
         const bool is_last = launch + 1 == pass.launches;
         const auto [kernel_s, wall_s] =
             timed_launch(*pass.row->session, jobs, clock, is_last ? meanwhile : std::function<void()>());
         sum.kernel_s += kernel_s;
         sum.wall_s += wall_s;
-        if (pass.after) pass.after(launch);
+        if (pass.after) pass.after(launch, std::min(passes, pass.in_flight));
     }
     return sum;
 }
@@ -80,7 +82,7 @@ void add_samples(RowRun& row, const RowSamples& more)
 void Sampler::warmed_up(RowRun& row, double pass_s) const
 {
     constexpr double for_faster_clocks = 1.25; // a device that has rested is slower than it will be
-    row.passes = passes_for(for_faster_clocks * sample_s_, pass_s);
+    row.passes = std::max<std::uint32_t>(passes_for(for_faster_clocks * sample_s_, pass_s), row.key.in_flight);
 }
 
 void Sampler::take(const Pass& pass, RowSamples& samples) const

@@ -24,9 +24,11 @@ namespace tetrace {
 struct Pass {
     RowRun* row;
     std::size_t launches;
-    std::function<std::vector<TraceJob>(std::size_t launch)> prepare;   ///< gives the session what the launch needs
-    std::function<void(std::size_t launch)> after = {};                 ///< called after each, untimed; may be empty
+    std::function<std::vector<TraceJob>(std::size_t launch)> prepare; ///< gives the session what the launch needs
+    /// Called after each, untimed, with how many outputs its passes have written; may be empty.
+    std::function<void(std::size_t launch, std::size_t outputs)> after = {};
     std::function<void(double fraction)> tell_progress = [](double) {}; ///< called before each
+    std::uint32_t in_flight = 1; ///< passes of each that may be on the device together
 };
 
 /// Does a pass, each launch `passes` times. meanwhile: called during the last launch; may be empty. Throws what the
@@ -50,7 +52,7 @@ public:
     {
     }
 
-    /// Sets the row's passes after a pass that warmed it up.
+    /// Sets the row's passes after a pass that warmed it up: as many as launches in flight, at least.
     void warmed_up(RowRun& row, double pass_s) const;
 
     /// Takes a sample of row.passes passes, which grow where they were too short, and adds it to `samples`. Launching

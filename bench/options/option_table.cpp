@@ -4,6 +4,7 @@
 #include "bench/options/option_parts.h"
 #include "bench/options/option_values.h"
 #include "bench/options/workload.h"
+#include "core/device/backend.h"
 #include "scenes/catalogue.h"
 
 #include <algorithm>
@@ -352,6 +353,12 @@ std::vector<OptionRow> judging_options()
          "span the runs: their range, or with 5 or more runs a 95 % interval from resampling runs and samples. "
          "Default: 1, with intervals based only on its samples. For 'reproduce', only rivals.",
          bit(Verb::bench) | bit(Verb::reproduce), false, set_count("--runs", &Options::runs, 1, 100)},
+        {"Measuring", "--launches-in-flight", "N",
+         "Launches of a sample that may be on the device together, 1 to 8, each with an output of its own: a launch "
+         "begins when the one that is N before it has ended. All N outputs are verified before and after the samples. "
+         "Rates are then throughput without the gaps between launches; latency is still that of single launches. For "
+         "opencl, vulkan, cuda and cuda-host; rows of openmp and embree, and of --task tally, have 1. Default: 1.",
+         bit(Verb::bench), false, set_count("--launches-in-flight", &Options::launches_in_flight, 1, max_in_flight)},
         {"Measuring", "--sample-time", "TIME",
          "Minimum duration of a sample on its device, or 4096 passes, if that is less: seconds, or a number "
          "followed by s, up to a minute. A GPU traces all views in less than a millisecond, too short for its "

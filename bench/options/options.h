@@ -167,10 +167,11 @@ struct Options {
     unsigned packet_lanes = 0;           ///< one of packet_widths; 0: the widest available
     std::uint64_t buffer_limit = 0;      ///< largest buffer of every device, in bytes; 0: unchanged
     unsigned samples = 10;
-    bool exact_samples = false; ///< whether noisy rows get no more
-    unsigned runs = 1;          ///< of the measurement, each with sessions of its own
-    double sample_s = 0.1;      ///< that a sample lasts at least, on its device; 0: a pass
-    double budget_s = 240;      ///< for verifying and timing all rows
+    bool exact_samples = false;      ///< whether noisy rows get no more
+    unsigned runs = 1;               ///< of the measurement, each with sessions of its own
+    unsigned launches_in_flight = 1; ///< of a sample of `bench`, see select_rows()
+    double sample_s = 0.1;           ///< that a sample lasts at least, on its device; 0: a pass
+    double budget_s = 240;           ///< for verifying and timing all rows
 
     std::vector<PaperTarget> targets;     ///< of `reproduce`; empty: those of the paper; the others only by themselves
     std::vector<PaperBuild> paper_builds; ///< of `reproduce`; empty: all

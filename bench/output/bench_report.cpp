@@ -61,13 +61,16 @@ std::string timed_sentence(const BenchResult& result)
                                    measurement.samples, instead, more, in_all);
     if (!result.scenes.empty()) {
         const ResultValue scene(result.scenes.front(), "scene");
-        std::uint32_t passes = 1;
-        for (const RowRecord& row : result.rows)
+        std::uint32_t passes = 1, in_flight = 1;
+        for (const RowRecord& row : result.rows) {
             passes = std::max(passes, row.passes);
-        text += fmt::format(" A sample is {} views of {} at {} on {} threads, traced together{}.",
+            in_flight = std::max(in_flight, row.key.in_flight);
+        }
+        text += fmt::format(" A sample is {} views of {} at {} on {} threads, traced together{}{}.",
                             scene.at("views").items().size(), scene.at("camera_set").line(),
                             fmt::join(sizes_of(result), ", "), fmt::join(threads_of(result), ", "),
-                            passes > 1 ? fmt::format(", up to {} times in turn", passes) : "");
+                            passes > 1 ? fmt::format(", up to {} times in turn", passes) : "",
+                            in_flight > 1 ? fmt::format(", up to {} of these launches in flight", in_flight) : "");
     }
     return text + few;
 }
@@ -161,7 +164,7 @@ const char* const time_columns =
     "pass, in which devices compile what is left; then, for all views, kernel: device seconds; launch: wall minus "
     "kernel, launching and waiting; download: hits to the host; wall: launch to end. latency: kernel of one view "
     "launched alone; fixed: cost of each launch, by the line through launches of one view and of all, if it is "
-    "above the noise. Medians of the samples, except for download.";
+    "above the noise; per Mray: what a million rays add, by that line. Medians of the samples, except for download.";
 
 /// The rows that an interrupt left without a rate.
 std::string untimed_sentence(const std::vector<RowRecord>& rows)

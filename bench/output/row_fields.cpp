@@ -254,6 +254,15 @@ std::vector<RowField> identity_fields()
               }),
          recorded("count", optional, "host threads, if the run has others, too: `tetrace.threads` is the most"),
          csv("threads")},
+        {"", "launches_in_flight",
+         both([](const RowKey& key) { return key.in_flight == 1 ? json() : json(key.in_flight); },
+              [](RowKey& key, const ResultValue& value) {
+                  if (value.count() < 2 || value.count() > max_in_flight)
+                      value.reject(fmt::format("is not a number of launches, 2 to {}", max_in_flight));
+                  key.in_flight = static_cast<unsigned>(value.count());
+              }),
+         recorded("count", optional, "of a sample, on the device together, each with an output of its own; if not 1"),
+         csv("launches in flight")},
         {"", "task",
          both(
              [](const RowRecord& row) {
@@ -407,7 +416,7 @@ std::vector<RowField> time_fields()
          csv("fixed", "s", 9), times("fixed", "ms", 3, milliseconds), report("fixed", "", 3, milliseconds)},
         {"times", "s_per_mray", &Figures::s_per_mray,
          recorded("positive", optional, "of a million rays, by the same line; with fixed_s if that is left out"),
-         csv("per Mray", "s", 9)},
+         csv("per Mray", "s", 9), times("per Mray", "ms", 3, milliseconds), report("per Mray", "", 3, milliseconds)},
         {"times", "passes", above_one(&RowRecord::passes),
          recorded(R"({ "type": "integer", "minimum": 2 })", optional,
                   "of a sample, which traces all views so often; of `reproduce` the most of any view or batch; left "

@@ -209,6 +209,7 @@ nlohmann::json scores_json(const std::vector<Score>& scores)
         const RowKey& key = score.rows.front()->key;
         nlohmann::json object = {{"row", score.title()}, {"backend", key.backend}, {"device_index", key.device}};
         if (key.threads > 0) object["threads"] = key.threads;
+        if (key.in_flight > 1) object["launches_in_flight"] = key.in_flight;
         for (const RowRecord* row : score.rows)
             object["rows"].push_back(row_name(row->key));
         if (score.is_score()) {

@@ -31,7 +31,8 @@ std::vector<StructureContest> structure_contests(const std::vector<RowGroup>& gr
     for (const RowGroup& group : groups) {
         if (group.kind == DeviceKind::emulated || group.rays != RayKind::primary || group.task != Task::trace) continue;
         for (auto& contest : contests_of(group.rows, [&](const ReportRow&a, const ReportRow&b) {
-                 return device_text(a, files) == device_text(b, files) && a.row->threads == b.row->threads;
+                 return device_text(a, files) == device_text(b, files) && a.row->threads == b.row->threads &&
+                        a.row->in_flight == b.row->in_flight;
              })) {
             if (contest.rows.front()->row->threads > 0) continue; // those with the most answer for the others
             if (!std::ranges::all_of(contest.rows, [](const ReportRow* row) { return row->known_kernel.has_value(); }))

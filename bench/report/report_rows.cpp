@@ -142,6 +142,8 @@ std::vector<ReportRow> report_rows(const ResultFile& result, std::size_t file)
         row.api = result.rows[i].api();
         if (const auto threads = result.rows[i].threads; threads > 0)
             row.api += ", " + counted(threads, "thread", "threads");
+        if (const auto launches = result.rows[i].in_flight; launches > 1)
+            row.api += fmt::format(", {} in flight", launches);
         row.device = result.head.shown(result.rows[i].device);
         read_into(row.rays, items[i].at("rays"));
         if (const auto task = items[i].find("task")) {

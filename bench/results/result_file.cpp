@@ -116,6 +116,7 @@ ResultRow read_any_row(const ResultValue& value)
         if (const auto index = value.find("device_index")) row.device_index = index->count();
     }
     if (const auto threads = value.find("threads")) row.threads = count_up_to(most_threads, *threads);
+    if (const auto launches = value.find("launches_in_flight")) row.in_flight = count_up_to(max_in_flight, *launches);
     row.samples_s = read_samples(value);
     if (const auto times = value.find("times")) {
         if (const auto pulse = times->find("pulse")) row.pulse_ratio = pulse->number();

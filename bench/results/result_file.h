@@ -60,6 +60,7 @@ struct ResultRow {
     std::optional<DeviceKind> device_kind; ///< empty if the row has no device
     std::uint64_t device_index = 0;        ///< in its backend
     std::uint64_t threads = 0;             ///< host threads; 0: those of the whole run
+    std::uint64_t in_flight = 1;           ///< launches of a sample that were on the device together
     std::string hit_hash;   ///< empty if no rays were traced, or only by shards; of searches, the hash of their faces
     std::string views_hash; ///< empty in results before 2026-11-23 as well
     std::optional<double> mrays_per_s; ///< of the median sample; of searches, millions of those

@@ -81,6 +81,11 @@ std::vector<std::vector<double>> samples_of_runs(const RowRecord& row)
     return runs;
 }
 
+bool has_latency(const RowRecord& row)
+{
+    return row.launches.joined == row.launches.single && row.key.in_flight == 1;
+}
+
 const Traced* traced(const RowRecord& row)
 {
     return std::get_if<Traced>(&row.outcome);

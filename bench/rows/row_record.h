@@ -191,6 +191,8 @@ void set_setup_cost(RowRecord& row, const SetupCost& cost);
 [[nodiscard]] std::vector<const RowRecord*> rows_of(const std::string& scene, const std::vector<RowRecord>& rows);
 /// The samples of each run of the measurement.
 [[nodiscard]] std::vector<std::vector<double>> samples_of_runs(const RowRecord& row);
+/// Whether the samples have a launch for each view, one after the other: their times are latencies.
+[[nodiscard]] bool has_latency(const RowRecord& row);
 /// The result of tracing; null if the row failed or was skipped.
 [[nodiscard]] const Traced* traced(const RowRecord& row);
 

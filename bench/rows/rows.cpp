@@ -146,6 +146,12 @@ std::vector<unsigned> wanted_threads(const Options& options, const Device& devic
     return counts;
 }
 
+unsigned launches_in_flight(const Options& options, const Device& device, const KernelId& kernel)
+{
+    const bool can = device.kind != DeviceKind::cpu && !traits_of(kernel.task).tallies;
+    return can ? options.launches_in_flight : 1;
+}
+
 void add_rows(std::vector<RowKey>& rows, const Options& options, RowKey key, const Backend& backend)
 {
     key.backend = backend.name();
@@ -154,6 +160,7 @@ void add_rows(std::vector<RowKey>& rows, const Options& options, RowKey key, con
         for (const TetOrder order : wanted_orders(options, key.kernel)) {
             key.device = device;
             key.order = order;
+            key.in_flight = launches_in_flight(options, backend.devices()[device], key.kernel);
             for (const unsigned threads : wanted_threads(options, backend.devices()[device])) {
                 key.threads = threads;
                 if (std::ranges::find(rows, key) == rows.end()) rows.push_back(key);
@@ -290,6 +297,18 @@ bool asks_to_cross(const Options& options)
     throw Error(ErrorKind::usage, text);
 }
 
+/// An option that no row obeys is a mistake.
+void require_in_flight(const Options& options, const std::vector<RowKey>& rows)
+{
+    const auto has_it = [&](const RowKey& key) { return key.in_flight == options.launches_in_flight; };
+    if (std::ranges::any_of(rows, has_it)) return;
+    throw Error(ErrorKind::usage,
+                fmt::format("--launches-in-flight {}: no selected row can have several; a processor's threads (openmp, "
+                            "embree) begin a launch when the one before it has ended, and the sums of --task tally are "
+                            "those of one launch; select opencl, vulkan, cuda or cuda-host, and another task",
+                            options.launches_in_flight));
+}
+
 std::string numbered_backend(const RowKey& key)
 {
     return key.device == 0 ? key.backend : fmt::format("{}:{}", key.backend, key.device);
@@ -313,6 +332,7 @@ RowKey reference_row(RowKey key)
     key.backend = reference_backend().name();
     key.device = 0;
     key.threads = 0;
+    key.in_flight = 1;
     key.kernel.schedule = Schedule::tiles;
     return key;
 }
@@ -336,8 +356,12 @@ bool same_place(const RowKey& a, const RowKey& b)
     RowKey there = a;
     there.backend = b.backend;
     there.device = b.device;
-    there.threads = b.threads;
-    return there == a;
+    return there == a && same_load(a, b);
+}
+
+bool same_load(const RowKey& a, const RowKey& b)
+{
+    return a.threads == b.threads && a.in_flight == b.in_flight;
 }
 
 bool on_reference(const RowKey& key)
@@ -355,9 +379,10 @@ std::string row_name(const RowKey& key)
                                      ? std::string()
                                      : std::string("/schedule:").append(name_of(key.kernel.schedule));
     return fmt::format(
-        "{}/{}{}/math:{}{}{}{}/api:{}{}", name_of(key.kernel), key.scene, rays, name_of(key.kernel.math),
+        "{}/{}{}/math:{}{}{}{}/api:{}{}{}", name_of(key.kernel), key.scene, rays, name_of(key.kernel.math),
         key.order == TetOrder::chains ? std::string() : std::string("/order:").append(name_of(key.order)), schedule,
-        order, numbered_backend(key), key.threads == 0 ? "" : fmt::format("/threads:{}", key.threads));
+        order, numbered_backend(key), key.threads == 0 ? "" : fmt::format("/threads:{}", key.threads),
+        key.in_flight == 1 ? "" : fmt::format("/in_flight:{}", key.in_flight));
 }
 
 bool is_method_of(Structure structure, Method method)
@@ -371,9 +396,10 @@ bool is_method_of(Structure structure, Method method)
 
 std::string device_label(const RowKey& key)
 {
-    const std::string device = numbered_backend(key);
-    if (key.threads == 0) return device;
-    return fmt::format("{}, {}", device, counted(key.threads, "thread", "threads"));
+    std::string device = numbered_backend(key);
+    if (key.threads != 0) device += fmt::format(", {}", counted(key.threads, "thread", "threads"));
+    if (key.in_flight != 1) device += fmt::format(", {} in flight", key.in_flight);
+    return device;
 }
 
 std::vector<std::string> missing_devices(const Options& options, const std::vector<Backend*>& backends)
@@ -447,6 +473,7 @@ std::vector<RowKey> unfiltered_rows(const Options& options, const std::vector<st
             for (const RowKey& key : rows_of_kinds(options, task, scene, backends))
                 rows.push_back(key);
     if (rows.empty()) reject_selection(options, rows);
+    require_in_flight(options, rows);
     return rows;
 }
 

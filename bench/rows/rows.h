@@ -20,22 +20,28 @@ struct RowKey {
     std::size_t device = 0; ///< index in the backend's devices()
     unsigned threads = 0;   ///< host threads, if they differ from the whole run's
     RayOrder ray_order = RayOrder::tiles;
+    unsigned in_flight = 1; ///< launches of a sample that may be on the device together
 
     friend bool operator==(const RowKey&, const RowKey&) = default;
 };
 
-/// The reference's row that does the same work as a row: on its device, with all threads, in schedule tiles.
+/// The reference's row that does the same work as a row: on its device, with all threads, in schedule tiles, a launch
+/// after the other.
 [[nodiscard]] RowKey reference_row(RowKey key);
 
 /// Whether two rows do the same work: one kernel, regardless of its schedule, on the same tets, rays and orders.
-/// Backends, devices and threads may differ.
+/// Backends, devices, threads and launches in flight may differ.
 [[nodiscard]] bool same_work(const RowKey& a, const RowKey& b);
 
 /// Whether two rows trace the same rays of the same scene in the same order, with any kernels on any device, and
 /// for the same task.
 [[nodiscard]] bool same_rays(RowKey a, RowKey b);
 
-/// Whether two rows run in the same place: a backend's device, with the same threads.
+/// Whether two rows keep their devices busy in the same way, so that their rates may be compared: with as many host
+/// threads, and as many launches in flight.
+[[nodiscard]] bool same_load(const RowKey& a, const RowKey& b);
+
+/// Whether two rows run in the same place: a backend's device, with the same load.
 [[nodiscard]] bool same_place(const RowKey& a, const RowKey& b);
 
 /// Whether the row runs on the reference_backend().
@@ -45,7 +51,8 @@ struct RowKey {
 /// no counts. Rows of another order than chains have "order:hilbert" and the like before the api. Rows of another
 /// schedule than tiles have "schedule:persistent". Rows whose given rays come in another order than that of tiles have
 /// "rays:morton". Rows of a backend's later devices end in the device's index, "api:opencl:1". Rows of task search have
-/// no rays: theirs are given. Rows with other threads than the whole run end in "/threads:1".
+/// no rays: theirs are given. Rows with other threads than the whole run end in "/threads:1", rows with several
+/// launches in flight in "/in_flight:2".
 [[nodiscard]] std::string row_name(const RowKey& key);
 
 /// The kernel of these names, as results have them; empty if this tetrace has none.
@@ -71,6 +78,8 @@ struct RowKey {
 /// - A backend has rows of its usable devices. A backend without one has rows of its first device where --backend or
 /// --require names it.
 /// - A kernel that a backend has and a device cannot run still gets a row, which ends as unsupported.
+/// - Rows have --launches-in-flight if their device can: a processor's threads begin a launch when the one before it
+/// has ended, and the sums of task tally are those of one launch. Throws Error{usage} if no row can.
 /// - Layout rt has rows by default only on real GPUs that run it, and elsewhere where --layout, a filter or schedule
 /// pipeline names it. Of schedules, tiles (ray queries) and pipeline select among them. If neither is given, a device
 /// has one row: ray queries, or a pipeline if it has only that. Throws Error{missing} if a text of --device matches
@@ -108,7 +117,8 @@ inline constexpr const char* search_scene = "random-tets";
 /// The scene, and the rays unless they are primary: "bunny", "bunny, shadow rays", "bunny, ao rays morton".
 [[nodiscard]] std::string rays_title(const RowKey& key);
 
-/// A row's device in tables: "opencl", "opencl:1" for a backend's later devices, "openmp, 1 thread".
+/// A row's device in tables: "opencl", "opencl:1" for a backend's later devices, "openmp, 1 thread", "cuda, 2 in
+/// flight".
 [[nodiscard]] std::string device_label(const RowKey& key);
 
 /// "cdt maria tet80 on opencl": a row of a scene that the text has already named.

@@ -6,6 +6,7 @@
 #include "core/rays/hit.h"
 #include "kernels/layouts/layout.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -163,6 +164,9 @@ struct SessionOptions {
     std::filesystem::path program_file = {};
 };
 
+/// Passes of a launch that may be in flight together (TraceJob::in_flight).
+inline constexpr std::uint32_t max_in_flight = 8;
+
 /// One image's worth of primary rays, or the rays that a session was given: see given_job(), search_job().
 struct TraceJob {
     View view; ///< of primary rays
@@ -172,6 +176,7 @@ struct TraceJob {
     std::uint32_t max_steps = 0;      ///< a walk with this many steps is LOST
     bool any_hit = false;             ///< any hit will do, so the first one found is the answer
     std::uint32_t passes = 1;         ///< how often the whole launch is traced, with the same hits each time
+    std::uint32_t in_flight = 1;      ///< passes that may be on the device together, each with its own output
 
     [[nodiscard]] std::size_t rays() const { return std::size_t{width} * height; }
 };
@@ -230,16 +235,18 @@ public:
     virtual void set_rays(std::span<const Quad> quads);
     /// Fills the whole output with POISON, untimed, then starts the kernel for every job. The jobs are in flight
     /// together: none waits for another's end. Uses several launches if one would run long enough for a watchdog to
-    /// fire (core/device/launch.h). jobs: one or more, all with the same passes. Passes that fit in one launch follow
-    /// each other without the host, between two readings of the device's clock. A pass begins when the pass before it
-    /// has ended, of all jobs.
+    /// fire (core/device/launch.h). jobs: one or more, all with the same passes and in_flight. Passes that fit in one
+    /// launch follow each other without the host, between two readings of the device's clock. A pass begins when the
+    /// pass that is in_flight before it has ended, of all jobs; it writes to output number pass % in_flight. Throws
+    /// Error{unsupported} if several are to be in flight, and the session traces on the host or sums up for each tet.
     void launch(std::span<const TraceJob> jobs);
     /// The same for one job.
     void launch(const TraceJob& job) { launch(std::span(&job, 1)); }
     /// Waits for the launch; returns device seconds of only the kernel, of all its jobs and passes together.
     [[nodiscard]] virtual double wait() = 0;
-    /// Copies the hits of the last launch, job after job, row after row; hits.size(): the sum of width * height.
-    /// Throws Error{wrong_result} if the kernel wrote outside its output.
+    /// Copies the hits of the last launch, job after job, row after row; hits.size(): the sum of width * height. If
+    /// passes were in flight together, those of each output that has been written follow each other: min(passes,
+    /// in_flight) times as many. Throws Error{wrong_result} if the kernel wrote outside its output.
     void read_back(std::span<Hit> hits);
     /// Task search: copies the faces that the last launch found, 0 to 3 or NO_EXIT, in the order of the rays.
     /// faces.size(): the number of rays. Throws Error{wrong_result} if the kernel wrote outside its output, or a word
@@ -263,11 +270,19 @@ public:
     [[nodiscard]] virtual std::uint64_t bytes() const = 0;
 
 protected:
-    /// Where the results of the last launch are in its output; start() may call it.
+    /// Where the results of the last launch are in its output; start() may call it. If passes are in flight together,
+    /// each has parts of its own for all jobs: those of pass p are from jobs * (p % in_flight) on.
     [[nodiscard]] OutputParts output_parts(std::size_t words_per_ray) const
     {
         return {job_rays_, words_per_ray, tally_words_.size()};
     }
+    /// How many of these parts the last launch has written; the others are still POISON.
+    [[nodiscard]] std::size_t written_parts() const
+    {
+        return job_rays_.size() / in_flight_ * std::min(passes_, in_flight_);
+    }
+    /// Number of rays of the parts that are written.
+    [[nodiscard]] std::size_t written_rays() const;
     /// For the constructor of a session: its kernel's task may sum up for each tet.
     void make_tally(Task task, std::size_t tets);
 
@@ -279,9 +294,9 @@ private:
     /// Copies the whole output, as output_parts() has it: words_per_ray() per ray, row after row, between guard words.
     virtual void read_output(std::span<std::uint32_t> words) = 0;
 
-    std::vector<std::size_t> job_rays_; ///< of the last launch
+    std::vector<std::size_t> job_rays_; ///< of the last launch, of each part of its output
     std::vector<std::uint32_t> tally_words_;
-    std::uint32_t passes_ = 1; ///< of the last launch
+    std::uint32_t passes_ = 1, in_flight_ = 1; ///< of the last launch
     double download_s_ = 0;
 };
 

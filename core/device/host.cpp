@@ -1,6 +1,7 @@
 #include "core/device/host.h"
 
 #include "core/base/control_groups.h"
+#include "core/base/error.h"
 #include "core/base/printable.h"
 #include "core/base/stopwatch.h"
 #include "core/device/launch.h"
@@ -62,6 +63,9 @@ bool host_has_fused_multiply()
 
 void HostSession::start(std::span<const TraceJob> jobs)
 {
+    if (jobs.front().in_flight != 1)
+        throw Error(ErrorKind::unsupported,
+                    "several launches in flight: on the host, one begins when the one before it has ended");
     const OutputParts parts = output_parts(words_per_ray(task_));
     if (output_.capacity() < parts.words() && !fits_in_memory(parts.words() * sizeof(output_[0])))
         throw std::bad_alloc();

@@ -94,19 +94,55 @@ std::uint32_t tile_count(std::span<const LaunchPiece> pieces)
 }
 
 void Launches::start(std::span<const LaunchParams> images, std::uint32_t passes, const Enqueue& enqueue,
-                     const std::function<void()>& take_times)
+                     const std::function<void()>& take_times, std::uint32_t in_flight)
 {
     seconds_ = 0;
+    jobs_ = images.size();
     std::uint64_t tiles = 0;
     for (const LaunchParams& image : images)
         tiles += tile_count(image);
-    while (passes > 0) {
+    for (std::uint32_t pass = 0; pass < passes;) {
         const bool fits = !is_first_pass_ && tiles > 0 && tiles <= size_.tiles();
-        const std::uint32_t together =
-            fits ? std::min(passes, max_targets * (size_.tiles() / static_cast<std::uint32_t>(tiles))) : 1;
-        start_passes(images, together, enqueue, take_times);
-        passes -= together;
+        if (fits) {
+            first_pass_ = pass;
+            in_flight_ = in_flight;
+            const std::uint32_t room = max_targets * (size_.tiles() / static_cast<std::uint32_t>(tiles));
+            const std::uint32_t together = std::min(passes - pass, room);
+            start_passes(images, together, enqueue, take_times);
+            pass += together;
+        } else {
+            const std::uint32_t together = std::min(passes - pass, in_flight);
+            start_as_one(images, pass, together, in_flight, enqueue, take_times);
+            pass += together;
+        }
     }
+    first_pass_ = 0;
+    in_flight_ = 1;
+}
+
+/// The images of several passes, as if they were those of one, each with the output that it has.
+void Launches::start_as_one(std::span<const LaunchParams> images, std::uint32_t first, std::uint32_t passes,
+                            std::uint32_t in_flight, const Enqueue& enqueue, const std::function<void()>& take_times)
+{
+    std::vector<LaunchParams> all;
+    for (std::uint32_t output = 0; output < in_flight; ++output) {
+        const bool has_pass = (output + in_flight - first % in_flight) % in_flight < passes;
+        for (LaunchParams image : images) {
+            if (!has_pass) image.first_tile = tile_count(image); // nothing is left of it
+            all.push_back(image);
+        }
+    }
+    first_pass_ = 0;
+    in_flight_ = 1;
+    start_passes(all, 1, enqueue, take_times);
+}
+
+std::vector<LaunchPiece> Launches::of_pass(std::span<const LaunchPiece> pieces, std::uint32_t pass) const
+{
+    std::vector<LaunchPiece> own(pieces.begin(), pieces.end());
+    for (LaunchPiece& piece : own)
+        piece.job += output_of(pass) * jobs_;
+    return own;
 }
 
 /// As few launches as their size allows: each but the last is full, and holds the end of one job and more of the next.

@@ -86,21 +86,33 @@ public:
     /// Calls enqueue for each launch. images: the params of each job, from its first tile on. passes: of all jobs; if a
     /// launch may have all their tiles, as many passes as fit into a second are one call. take_times must call took().
     /// During the session's first pass it is called after each launch, because nothing is known yet about how long a
-    /// launch takes.
+    /// launch takes. in_flight: passes that may be on the device together (TraceJob::in_flight); enqueue lets each pass
+    /// wait for the one that is so many before it. If a launch has room for a part of a pass only, the launches cut so
+    /// many passes as one: each holds the end of a pass and more of the next.
     void start(std::span<const LaunchParams> images, std::uint32_t passes, const Enqueue& enqueue,
-               const std::function<void()>& take_times);
+               const std::function<void()>& take_times, std::uint32_t in_flight = 1);
+    /// For enqueue: which of the outputs of passes in flight together a pass of the launch has.
+    [[nodiscard]] std::uint32_t output_of(std::uint32_t pass) const { return (first_pass_ + pass) % in_flight_; }
+    /// For enqueue: the pieces of a pass; `job` is the part of the output that it writes.
+    [[nodiscard]] std::vector<LaunchPiece> of_pass(std::span<const LaunchPiece> pieces, std::uint32_t pass) const;
+    /// For enqueue: outputs that passes of the launch write in turn.
+    [[nodiscard]] std::uint32_t in_flight() const { return in_flight_; }
     /// Reports how long a launch of that many tiles took on the device, all its passes together.
     void took(std::uint32_t tiles, std::uint32_t passes, double seconds);
     /// Of the launches that were reported to took() since start() was called.
     [[nodiscard]] double seconds() const { return seconds_; }
 
 private:
+    void start_as_one(std::span<const LaunchParams> images, std::uint32_t first, std::uint32_t passes,
+                      std::uint32_t in_flight, const Enqueue& enqueue, const std::function<void()>& take_times);
     void start_passes(std::span<const LaunchParams> images, std::uint32_t passes, const Enqueue& enqueue,
                       const std::function<void()>& take_times);
 
     LaunchSize size_;
     std::uint32_t max_piece_tiles_;
     bool is_first_pass_ = true;
+    std::size_t jobs_ = 0;                         ///< of start()
+    std::uint32_t in_flight_ = 1, first_pass_ = 0; ///< of the launch that is enqueued
     double seconds_ = 0;
 };
 

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <functional>
 #include <numeric>
+#include <utility>
 
 namespace tetrace {
 
@@ -107,16 +108,29 @@ void Session::set_rays(std::span<const Quad>)
 
 void Session::launch(std::span<const TraceJob> jobs)
 {
-    const auto passes = [](const TraceJob& job) { return job.passes; };
+    const auto passes = [](const TraceJob& job) { return std::pair(job.passes, job.in_flight); };
     if (jobs.empty() || std::ranges::adjacent_find(jobs, std::ranges::not_equal_to(), passes) != jobs.end())
         throw Error(ErrorKind::internal, "a launch of no job, or of jobs with different passes");
+    const std::uint32_t in_flight = jobs.front().in_flight;
+    if (in_flight == 0 || in_flight > max_in_flight)
+        throw Error(ErrorKind::internal, "a launch with " + std::to_string(in_flight) + " passes in flight");
     if (!tally_words_.empty() && jobs.size() != 1)
         throw Error(ErrorKind::internal, "a launch of several jobs, which would have a tally each");
+    if (!tally_words_.empty() && in_flight != 1)
+        throw Error(ErrorKind::unsupported, "several launches in flight: the sums of the tets are those of one");
     passes_ = jobs.front().passes;
+    in_flight_ = in_flight;
     job_rays_.clear();
-    for (const TraceJob& job : jobs)
-        job_rays_.push_back(job.rays());
+    for (std::uint32_t output = 0; output < in_flight; ++output)
+        for (const TraceJob& job : jobs)
+            job_rays_.push_back(job.rays());
     start(jobs);
+}
+
+std::size_t Session::written_rays() const
+{
+    const auto end = job_rays_.begin() + static_cast<std::ptrdiff_t>(written_parts());
+    return std::accumulate(job_rays_.begin(), end, std::size_t{0});
 }
 
 /// The whole output is not kept in the session, because many sessions are open at a time.
@@ -125,13 +139,13 @@ void Session::read_results(std::span<Result> results)
 {
     static_assert(sizeof(Hit) == HIT_WORDS * sizeof(std::uint32_t));
     const OutputParts parts = output_parts(sizeof(Result) / sizeof(std::uint32_t));
-    require_output_of_last_launch(results.size(), std::accumulate(job_rays_.begin(), job_rays_.end(), std::size_t{0}));
+    require_output_of_last_launch(results.size(), written_rays());
     std::vector<std::uint32_t> output(parts.words());
     const Stopwatch watch;
     read_output(output);
     download_s_ = watch.seconds();
     check_guards(output, parts);
-    for (std::size_t job = 0; job < parts.count(); ++job) {
+    for (std::size_t job = 0; job < written_parts(); ++job) {
         const auto from = parts.results(std::span<const std::uint32_t>(output), job);
         std::memcpy(results.data(), from.data(), from.size_bytes());
         results = results.subspan(from.size_bytes() / sizeof(Result));

@@ -137,19 +137,20 @@ void IsolatedSession::read_output(std::span<std::uint32_t> words)
     require_launched();
     const bool are_faces = kernel_.task == Task::search;
     const OutputParts parts = output_parts(words_per_ray(kernel_.task));
-    const std::size_t bytes = rays() * words_per_ray(kernel_.task) * sizeof(words[0]) + tally_words().size_bytes();
+    const std::uint64_t written = written_rays();
+    const std::size_t bytes = written * words_per_ray(kernel_.task) * sizeof(words[0]) + tally_words().size_bytes();
     if (bytes > output_.bytes().size()) {
         output_ = {};
         output_ = SharedMemory(bytes);
     }
     ByteWriter arguments;
-    arguments.put(rays());
+    arguments.put(written);
     download_s_ = call(are_faces ? Request::read_faces : Request::read_hits, "reading the hits of " + name_of(kernel_),
                        arguments, output_, call_limit_s(0, bytes))
                       .get<double>();
     std::ranges::fill(words, POISON);
     std::span<const std::byte> read = output_.bytes();
-    for (std::size_t job = 0; job < parts.count(); ++job) {
+    for (std::size_t job = 0; job < written_parts(); ++job) {
         const auto results = std::as_writable_bytes(parts.results(words, job));
         std::ranges::copy(read.first(results.size()), results.begin());
         read = read.subspan(results.size());

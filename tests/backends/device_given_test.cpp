@@ -94,6 +94,27 @@ TEST_P(GivenRays, of_walks_that_ask_for_their_path_have_the_bits_of_openmp)
     }
 }
 
+TEST_P(GivenRays, are_those_of_each_of_launches_in_flight)
+{
+    const RaySet set = make_rays(RayKind::random, cubes.source());
+    const std::vector<Hit> right = cubes.answers(set);
+    for (const std::size_t device : usable) {
+        if (backend.devices()[device].kind == DeviceKind::cpu) continue; // one at a time
+        const auto session = backend.open(device, {.task = Task::rays}, {&cubes.scene.mesh, &cubes.packed}, {});
+        session->set_rays(given_quads(set, cubes.packed));
+        TraceJob job = given_job(set.rays.size(), cubes.packed.tet_count + 1, set.any_hit);
+        job.in_flight = 2;
+        job.passes = 4;
+        session->launch(job);
+        std::vector<Hit> hits(2 * right.size());
+        session->read_back(hits);
+        for (std::size_t output = 0; output < 2; ++output) {
+            const auto first = hits.begin() + static_cast<std::ptrdiff_t>(output * right.size());
+            EXPECT_EQ(different_rays({first, first + std::ssize(right)}, right, allowed_ulps(device)), 0u) << output;
+        }
+    }
+}
+
 TEST_P(GivenRays, are_those_that_were_given_last)
 {
     const RaySet first = make_rays(RayKind::random, cubes.source(0)),

@@ -90,6 +90,53 @@ TEST_P(DeviceSessions, give_joined_jobs_right_hits_in_a_sessions_first_launch_an
     }
 }
 
+TEST_P(DeviceSessions, give_the_hits_of_single_launches_in_each_output_of_launches_in_flight)
+{
+    const DeviceRays rays(make_cubes(4), Layout::tet80);
+    const std::vector<TraceJob> all = jobs_of_all_kinds(rays);
+    for (const std::size_t device : usable)
+        for (const Schedule schedule : {Schedule::tiles, Schedule::persistent}) {
+            const KernelId kernel{.schedule = schedule};
+            if (!backend.why_not(device, kernel).empty()) continue;
+            const auto session = open(device, kernel, rays.data());
+            const auto expect_right = [&](std::vector<TraceJob> jobs, std::uint32_t in_flight, std::uint32_t passes) {
+                std::vector<Hit> single;
+                for (TraceJob& job : jobs) {
+                    for (const Hit& hit : openmp_hits(rays, job))
+                        single.push_back(hit);
+                    job.in_flight = in_flight;
+                    job.passes = passes;
+                }
+                session->launch(jobs);
+                EXPECT_GT(session->wait(), 0);
+                const std::size_t outputs = std::min(in_flight, passes);
+                std::vector<Hit> hits(outputs * single.size());
+                session->read_back(hits);
+                for (std::size_t output = 0; output < outputs; ++output) {
+                    const auto first = hits.begin() + static_cast<std::ptrdiff_t>(output * single.size());
+                    EXPECT_EQ(wrong_rays(device, {first, first + std::ssize(single)}, single), 0u)
+                        << name_of(kernel) << ", output " << output << " of " << in_flight << ", passes " << passes;
+                }
+            };
+            expect_right(all, 2, 3); // the first launch of the session
+            expect_right(all, 2, 1);
+            expect_right(all, 3, 7);
+            expect_right(all, 8, 9);
+            expect_right({all[2], all[4]}, 2, 600); // more passes than Vulkan has events for
+            expect_right(all, 1, 2);
+        }
+}
+
+TEST(HostSessions, refuse_launches_in_flight_together)
+{
+    const DeviceRays rays(make_cubes(3), Layout::tet80);
+    TraceJob job = rays.from_outside(16, 16);
+    job.in_flight = job.passes = 2;
+    const auto session = reference_backend().open(0, {}, rays.data(), {});
+    const std::string error = error_of([&] { session->launch(job); });
+    EXPECT_TRUE(contains(error, "several launches in flight")) << error;
+}
+
 TEST_P(DeviceSessions, refuse_jobs_whose_hits_together_exceed_the_largest_buffer)
 {
     const DeviceRays rays(make_cubes(3), Layout::tet80);

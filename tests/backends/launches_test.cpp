@@ -174,6 +174,73 @@ TEST(Launches, of_jobs_that_fit_in_one_have_all_their_passes)
     EXPECT_EQ(std::ranges::count(passes, 1u), static_cast<std::ptrdiff_t>(passes.size()));
 }
 
+namespace {
+
+/// What enqueue is told: of each pass in turn, the part of the output that each piece writes.
+std::vector<std::vector<std::size_t>> parts_of_passes(Launches& launches, std::span<const LaunchParams> images,
+                                                      std::uint32_t passes, std::uint32_t in_flight)
+{
+    std::vector<std::vector<std::size_t>> parts;
+    launches.start(
+        images, passes,
+        [&](std::span<const LaunchPiece> pieces, std::uint32_t count) {
+            for (std::uint32_t pass = 0; pass < count; ++pass) {
+                parts.emplace_back();
+                for (const LaunchPiece& piece : launches.of_pass(pieces, pass))
+                    parts.back().push_back(piece.job);
+            }
+            launches.took(tile_count(pieces), count, 1e-4 * count); // a thousandth of the limit
+        },
+        [] {}, in_flight);
+    return parts;
+}
+
+} // namespace
+
+TEST(Launches, in_flight_together_write_to_their_outputs_in_turn)
+{
+    Launches launches(8);
+    const std::vector images = {params_of(64, 32), params_of(32, 64)};
+    using Parts = std::vector<std::vector<std::size_t>>;
+    EXPECT_EQ(parts_of_passes(launches, images, 1, 2), (Parts{{0, 1}}));
+    EXPECT_EQ(parts_of_passes(launches, images, 3, 2), (Parts{{0, 1}, {2, 3}, {0, 1}}));
+    EXPECT_EQ(parts_of_passes(launches, images, 3, 1), (Parts{{0, 1}, {0, 1}, {0, 1}}));
+}
+
+TEST(Launches, in_flight_together_are_one_in_a_sessions_first_pass)
+{
+    Launches launches(8);
+    const std::vector images = {params_of(64, 32), params_of(32, 64)};
+    using Parts = std::vector<std::vector<std::size_t>>;
+    EXPECT_EQ(parts_of_passes(launches, images, 4, 3), (Parts{{0, 1, 2, 3, 4, 5}, {0, 1}}));
+}
+
+TEST(Launches, in_flight_together_hold_the_end_of_a_pass_and_more_of_the_next_if_one_does_not_fit)
+{
+    Launches launches(8);
+    const std::vector images = {params_of(240, 240)}; // of 900 tiles
+    const auto sizes_of = [&](std::uint32_t passes, std::uint32_t in_flight) {
+        std::vector<std::uint32_t> sizes;
+        std::vector<std::uint32_t> tiles(in_flight);
+        launches.start(
+            images, passes,
+            [&](std::span<const LaunchPiece> pieces, std::uint32_t count) {
+                EXPECT_EQ(count, 1u);
+                for (const LaunchPiece& piece : launches.of_pass(pieces, 0))
+                    tiles.at(piece.job) += piece.tiles;
+                sizes.push_back(tile_count(pieces));
+                launches.took(sizes.back(), 1, sizes.back() * (0.1 / 500.5)); // 500 tiles are a launch
+            },
+            [] {}, in_flight);
+        EXPECT_EQ(tiles.front(), 900 * (passes + in_flight - 1) / in_flight);
+        EXPECT_EQ(tiles.back(), 900 * (passes / in_flight));
+        return sizes;
+    };
+    (void)sizes_of(1, 1);
+    EXPECT_EQ(sizes_of(2, 1), (std::vector<std::uint32_t>{500, 400, 500, 400}));
+    EXPECT_EQ(sizes_of(3, 2), (std::vector<std::uint32_t>{500, 500, 500, 300, 500, 400}));
+}
+
 TEST(OutputParts, of_one_job_are_its_results_between_guards)
 {
     const OutputParts parts(std::array<std::size_t, 1>{17 * 9}, HIT_WORDS);

@@ -39,6 +39,20 @@ TEST(Comparison, emulations_compare_with_openmp_and_gpus_with_cuda)
     EXPECT_FALSE(found[3].has_value());
 }
 
+TEST(Comparison, is_of_rows_with_as_many_launches_in_flight)
+{
+    auto rows = list(row_on("cuda", DeviceKind::gpu, 2, "a"), row_on("vulkan", DeviceKind::gpu, 1, "a"),
+                     row_on("cuda", DeviceKind::gpu, 4, "a"));
+    rows[1].key.in_flight = rows[2].key.in_flight = 2;
+    for (RowRecord& row : rows)
+        row.device.name = "a GPU";
+    EXPECT_EQ(compare_rows(rows)[1]->reference, &rows[2]);
+    EXPECT_EQ(contests_of(rows).size(), 2u);
+    rows[2].key.in_flight = 3;
+    EXPECT_FALSE(compare_rows(rows)[2].has_value());
+    EXPECT_EQ(contests_of(rows).size(), 3u);
+}
+
 TEST(Comparison, of_fewer_than_five_samples_has_no_interval)
 {
     auto rows = list(row_on("openmp", DeviceKind::cpu, 2), row_on("opencl", DeviceKind::emulated, 4));

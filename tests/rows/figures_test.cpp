@@ -124,6 +124,21 @@ TEST(Figures, latency_is_of_launches_of_one_view_and_the_fixed_cost_of_the_line_
     EXPECT_FALSE(figures_of(row)->fixed_s.has_value());
 }
 
+TEST(Figures, of_launches_in_flight_have_a_latency_only_from_launches_by_themselves_and_no_fixed_cost)
+{
+    RowRecord row = timed_row();
+    row.key.in_flight = 2;
+    row.launches = {4, 4};
+    EXPECT_FALSE(figures_of(row)->latency_s.has_value()) << "its launches overlap";
+    row.latency_samples_s = {0.8, 0.81, 0.8, 0.79, 0.8};
+    EXPECT_DOUBLE_EQ(figures_of(row)->latency_s.value(), 0.2);
+    row.launches = {1, 4};
+    row.samples_s = {0.5, 0.51, 0.5, 0.49, 0.5, 0.5};
+    EXPECT_DOUBLE_EQ(figures_of(row)->latency_s.value(), 0.2);
+    EXPECT_FALSE(figures_of(row)->fixed_s.has_value());
+    EXPECT_FALSE(figures_of(row)->s_per_mray.has_value());
+}
+
 TEST(Figures, overhead_is_the_median_of_wall_minus_device_seconds_sample_by_sample)
 {
     RowRecord row = timed_row();

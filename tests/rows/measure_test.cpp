@@ -439,6 +439,53 @@ TEST_F(Measure, hits_that_only_views_in_flight_together_change_are_an_error_that
     EXPECT_EQ(status_of(rows_[1]), Status::ok);
 }
 
+namespace {
+
+/// Answers wrongly in the second output of launches in flight, from the read-back of that number on.
+class SecondOutputWrong : public WrappedSession {
+public:
+    SecondOutputWrong(std::unique_ptr<Session> inner, int from) : WrappedSession(std::move(inner)), from_(from) {}
+
+private:
+    void change(std::span<Hit> hits) override
+    {
+        const std::size_t both_views = 2 * 64;
+        if (hits.size() == 2 * both_views && ++read_ >= from_) hits[both_views + 64].t += 1;
+    }
+
+    int from_, read_ = 0;
+};
+
+} // namespace
+
+TEST_F(Measure, launches_in_flight_are_verified_in_each_output_before_and_after_the_samples)
+{
+    for (const int wrong_from : {1, 2, 3}) { // before, after, never
+        RowKey key{"cubes", "cuda-host", {}, RayKind::primary, TetOrder::chains};
+        key.in_flight = 2;
+        rows_.clear();
+        launched_.clear();
+        rows_.push_back(open_row(key, scene_, options_));
+        RowRun& row = rows_.front();
+        ASSERT_EQ(status_of(row), Status::ok) << reason_of(row);
+        row.session = std::make_unique<SecondOutputWrong>(std::move(row.session), wrong_from);
+        row.session = std::make_unique<WatchedSession>(std::move(row.session), 0, launched_, changes_);
+        verify_rows({&row}, scene_, options_);
+        static_cast<void>(measure_rows(rows_, options_, read_benchmark_flags({})));
+        EXPECT_EQ(launched_.size() > 10, wrong_from > 1) << "no sample of a row that is wrong before";
+        if (wrong_from > 2) {
+            EXPECT_EQ(status_of(row), Status::ok) << reason_of(row);
+            EXPECT_EQ(row.passes, 2u) << "one for each output";
+            EXPECT_TRUE(figures_of(row)->latency_s.has_value());
+            continue;
+        }
+        EXPECT_EQ(status_of(row), Status::error);
+        EXPECT_EQ(reason_of(row),
+                  "the hits of view 1 in output 2 of 2 launches in flight changed between verifying and "
+                  "measuring");
+    }
+}
+
 TEST_F(Measure, rows_that_are_wrong_are_not_timed)
 {
     std::get<Traced>(rows_[0].outcome).different = 1;

@@ -36,7 +36,7 @@ protected:
 // A new field of either struct does not compile here: it needs its line in the list below.
 [[maybe_unused]] void knows_every_field(const RowKey& key)
 {
-    [[maybe_unused]] const auto& [scene, backend, kernel, rays, order, device, threads, ray_order] = key;
+    [[maybe_unused]] const auto& [scene, backend, kernel, rays, order, device, threads, ray_order, in_flight] = key;
     [[maybe_unused]] const auto& [structure, method, layout, math, schedule, task] = kernel;
 }
 
@@ -55,7 +55,7 @@ TEST_P(RowKeys, have_the_same_rays_where_scene_kind_and_order_of_the_rays_agree)
     EXPECT_EQ(same_rays(other, row), GetParam().same_rays);
 }
 
-TEST_P(RowKeys, are_in_the_same_place_where_backend_device_and_threads_agree)
+TEST_P(RowKeys, are_in_the_same_place_where_backend_device_and_load_agree)
 {
     EXPECT_EQ(same_place(row, other), GetParam().same_place);
     EXPECT_EQ(same_place(other, row), GetParam().same_place);
@@ -97,6 +97,12 @@ INSTANTIATE_TEST_SUITE_P(
                    .same_rays = true,
                    .same_place = false,
                    .is_in_label = true},
+        Difference{.field = "in_flight",
+                   .change = [](RowKey& key) { key.in_flight = 2; },
+                   .same_work = true,
+                   .same_rays = true,
+                   .same_place = false,
+                   .is_in_label = true},
         Difference{.field = "structure",
                    .change = [](RowKey& key) { key.kernel.structure = Structure::bvh; },
                    .same_rays = true,
@@ -129,6 +135,7 @@ TEST(ReferenceRow, is_the_references_own_row_of_the_same_work)
     RowKey key = plain_row();
     key.device = 2;
     key.kernel.schedule = Schedule::persistent;
+    key.in_flight = 2;
     const RowKey reference = reference_row(key);
     EXPECT_TRUE(on_reference(reference));
     EXPECT_FALSE(on_reference(key));

@@ -107,6 +107,23 @@ TEST(Rows, a_kernel_that_the_host_cannot_run_is_a_row_and_one_that_the_backend_l
                              [](const RowKey& key) { return key.kernel.structure == Structure::bvh; }));
 }
 
+TEST(Rows, have_several_launches_in_flight_if_their_device_can)
+{
+    const std::vector<std::string> arguments = {"bench", "--layout", "tet80",      "--launches-in-flight",
+                                                "2",     "--task",   "trace,tally"};
+    const Options options = parse_options(arguments);
+    OldHost both({device_named("a", DeviceKind::gpu), device_named("b", DeviceKind::cpu)});
+    std::vector<std::string> list;
+    for (const RowKey& key : select_rows(options, {"s"}, {&both}))
+        list.push_back(row_name(key));
+    EXPECT_EQ(list, (std::vector<std::string>{"cdt/maria/tet80/s/primary/math:exact/api:old/in_flight:2",
+                                              "cdt/maria/tet80/s/primary/math:exact/api:old:1",
+                                              "tally/maria/tet80/s/primary/math:exact/api:old",
+                                              "tally/maria/tet80/s/primary/math:exact/api:old:1"}));
+    const std::string error = error_of([&] { (void)select_rows(options, {"s"}, {&openmp_backend()}); });
+    EXPECT_TRUE(contains(error, "--launches-in-flight 2: no selected row can have several")) << error;
+}
+
 TEST(Rows, every_usable_device_has_rows_named_by_its_index)
 {
     OldHost old({device_named("a", DeviceKind::gpu), device_named("b", DeviceKind::gpu, false),

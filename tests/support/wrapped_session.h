@@ -26,15 +26,12 @@ public:
     void read_output(std::span<std::uint32_t> words) override
     {
         const OutputParts parts = output_parts(HIT_WORDS);
-        std::size_t rays = 0;
-        for (std::size_t job = 0; job < parts.count(); ++job)
-            rays += parts.results(words, job).size() / HIT_WORDS;
-        std::vector<Hit> hits(rays);
+        std::vector<Hit> hits(written_rays());
         inner_->read_back(hits);
         change(hits);
         std::fill(words.begin(), words.end(), POISON);
         const Hit* next = hits.data();
-        for (std::size_t job = 0; job < parts.count(); ++job) {
+        for (std::size_t job = 0; job < written_parts(); ++job) {
             const auto results = parts.results(words, job);
             std::memcpy(results.data(), next, results.size_bytes());
             next += results.size() / HIT_WORDS;
