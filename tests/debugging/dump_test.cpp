@@ -120,10 +120,15 @@ TEST_F(Dump, of_a_variant_has_the_command_of_the_entry_point)
     EXPECT_EQ(run("dump --backend vulkan --layout bvh2 --variant difference_of.3/guard --entry tally --out out").code,
               2)
         << "a BVH has no such task";
-    if (dumps("vulkan", variant + "--entry tally")) EXPECT_TRUE(contains(command_for("maria_tet80.comp"), " -DTALLY "));
-    if (dumps("vulkan", variant)) EXPECT_TRUE(contains(command_for("maria_tet80.comp"), " -DTRACE "));
-    if (dumps("opencl", variant + "--entry absorb")) EXPECT_TRUE(contains(command_for("maria_tet80.cl"), " -DABSORB "));
-    if (dumps("opencl", variant + "--entry rays")) EXPECT_TRUE(contains(command_for("maria_tet80.cl"), " -DRAYS "));
+    const auto expect_option = [&](const std::string& backend, const std::string& file, const std::string& entry,
+                                   const std::string& option) {
+        if (!dumps(backend, variant + entry)) return;
+        EXPECT_TRUE(contains(command_for(file), option)) << command_for(file);
+    };
+    expect_option("vulkan", "maria_tet80.comp", "--entry tally", " -DTALLY ");
+    expect_option("vulkan", "maria_tet80.comp", "", " -DTRACE ");
+    expect_option("opencl", "maria_tet80.cl", "--entry absorb", " -DABSORB ");
+    expect_option("opencl", "maria_tet80.cl", "--entry rays", " -DRAYS ");
 }
 
 TEST_F(Dump, of_what_has_no_files_is_refused)
