@@ -171,7 +171,7 @@ TEST(Stressors, are_chosen_with_a_launch_and_the_size_of_the_largest_buffer)
 {
     const auto words_of = [](const char* text) -> std::int64_t {
         const auto chosen = chosen_defect(text);
-        return chosen ? chosen->launch.large_words : -1;
+        return chosen ? std::int64_t{chosen->launch.large_words} : -1;
     };
     EXPECT_EQ(words_of("zoo_of_exits:64:16"), 0);
     EXPECT_EQ(words_of("words_past_64_mib:64:16"), 0x1000000 + 0x100000);
