@@ -18,14 +18,19 @@ namespace {
 
 constexpr std::size_t rays_per_launch = std::size_t{1} << 20; // 32 MB of rays
 
-/// Those of ours for given rays, in the order of the list: `project` through tets, which is never lost.
+bool is_of_library(const KernelId& kernel)
+{
+    if (kernel.schedule != Schedule::tiles) return false;
+    return kernel.layout == Layout::rt || (is_portable(kernel) && kernel.math == MathMode::exact &&
+                                           (kernel.structure == Structure::bvh || kernel.method == Method::project));
+}
+
+/// Those for given rays, in the order of the list: ours, through tets by `project`, which is never lost; and a
+/// driver's.
 std::vector<KernelId> library_kernels()
 {
-    std::vector<KernelId> kernels;
-    for (const KernelId& kernel : kernels_of(Task::rays))
-        if (is_portable(kernel) && kernel.math == MathMode::exact && kernel.schedule == Schedule::tiles &&
-            (kernel.structure == Structure::bvh || kernel.method == Method::project))
-            kernels.push_back(kernel);
+    std::vector<KernelId> kernels = kernels_of(Task::rays);
+    std::erase_if(kernels, [](const KernelId& kernel) { return !is_of_library(kernel); });
     return kernels;
 }
 
@@ -83,7 +88,8 @@ Tracer::Tracer(std::shared_ptr<const LoadedScene> scene, std::string_view backen
     device_ = &api.devices()[device];
     if (!device_->usable) throw Error(ErrorKind::missing, "opening a device: " + api.name() + ": " + device_->reason);
     if (kernel.structure == Structure::cdt && scene_->no_tets) throw Error(*scene_->no_tets);
-    packed_ = packed(kernel.layout);
+    structure_ = kernel.structure;
+    if (kernel.layout != Layout::rt) packed_ = packed(kernel.layout);
     kernel = fastest(kernel, api, device);
     SessionOptions options;
     options.program_cache = compiled_programs();
@@ -110,8 +116,7 @@ void Tracer::trace(std::span<const tetrace_ray> rays, bool any_hit, std::span<te
 void Tracer::trace_launch(std::span<const tetrace_ray> rays, std::size_t first, bool any_hit,
                           std::span<tetrace_hit> hits)
 {
-    const PlacedRays placed(scene_->scene, structure_of(packed_.layout), rays, first,
-                            static_cast<unsigned>(omp_get_max_threads()));
+    const PlacedRays placed(scene_->scene, structure_, rays, first, static_cast<unsigned>(omp_get_max_threads()));
     const RaySet& set = placed.set();
     session_->set_rays(given_quads(set, packed_));
     std::vector<Hit> found(set.rays.size());

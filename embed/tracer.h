@@ -29,7 +29,8 @@ private:
     void trace_launch(std::span<const tetrace_ray> rays, std::size_t first, bool any_hit, std::span<tetrace_hit> hits);
 
     std::shared_ptr<const LoadedScene> scene_;
-    PackedScene packed_;
+    Structure structure_ = Structure::cdt;
+    PackedScene packed_; ///< empty for a driver's own BVH
     const Device* device_ = nullptr;
     std::unique_ptr<Session> session_;
 };

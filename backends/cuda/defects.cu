@@ -4,6 +4,24 @@
 
 #include "kernels/language/dialect_cuda.h"
 
+struct Real4 {
+    real x, y, z, w;
+};
+#define REAL4(a, b, c, d) (Real4{(a), (b), (c), (d)})
+#define LANE(vector, name) (vector).name
+KERNEL_FN Real4 operator+(Real4 a, Real4 b)
+{
+    return {a.x + b.x, a.y + b.y, a.z + b.z, a.w + b.w};
+}
+KERNEL_FN Real4 operator-(Real4 a, Real4 b)
+{
+    return {a.x - b.x, a.y - b.y, a.z - b.z, a.w - b.w};
+}
+KERNEL_FN Real4 operator*(Real4 a, Real4 b)
+{
+    return {a.x * b.x, a.y * b.y, a.z * b.z, a.w * b.w};
+}
+
 #define DEFECT_WORDS const uint *words,
 #define DEFECT_PASSED words,
 #define WORD(index) words[index]
@@ -42,8 +60,10 @@ KERNEL_FN uint own_lane()
 #define have_common_lane(a, b) (((a) & (b)) != 0u)
 #include "kernels/defects/lane_stressors.h"
 
-#define FAR_FN(name) KERNEL_FN void name(uint* results, uint* large, uint item_count)
+#define FAR_FN(name)                                                                                                   \
+    KERNEL_FN void name([[maybe_unused]] const uint* words, uint* results, uint* large, uint item_count)
 #define FAR(index) large[index]
+#define FAR_END words[FAR_END_WORD]
 #include "kernels/defects/far_stressors.h"
 
 #define DEFECT(name)                                                                                                   \
@@ -61,8 +81,8 @@ KERNEL_FN uint own_lane()
     }
 #define LANE_DEFECT GROUP_DEFECT
 #define FAR_DEFECT(name)                                                                                               \
-    extern "C" __global__ void run_##name(const uint*, uint* results, uint count, uint* large)                         \
+    extern "C" __global__ void run_##name(const uint* words, uint* results, uint count, uint* large)                   \
     {                                                                                                                  \
-        name(results, large, count);                                                                                   \
+        name(words, results, large, count);                                                                            \
     }
 #include "kernels/defects/defect_list.inc"

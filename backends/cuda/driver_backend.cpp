@@ -192,16 +192,12 @@ std::vector<std::uint32_t> DriverBackend::run_defect(std::size_t device, std::st
                                                      const DefectLaunch& launch)
 {
     const Found& here = require(device);
-    const Defect* const defect = find_defect(name);
-    if (defect != nullptr && defect->need == DefectNeed::large_buffer)
-        require_large_buffer(*defect, here.devices[device]);
     OpenDevice opened(here.driver.driver, ordinal_of(here.driver.driver, device));
     const LoadedProgram program = load_program(opened.context, opened.capability, here.programs, {"defects"}, {});
     const auto words = defect_words(launch);
     std::vector<std::uint32_t> results(output_words(name, launch));
     run_on_words(opened, program.module.function("run_" + std::string(name)), std::as_bytes(std::span(words)),
-                 launch.items, launch.group_items, results, std::string(name),
-                 defect == nullptr ? 0 : defect->large_bytes());
+                 launch.items, launch.group_items, results, std::string(name), launch.large_bytes());
     return results;
 }
 

@@ -22,15 +22,19 @@ std::vector<KernelFile> files_of(const KernelId& kernel)
     const std::string name = opencl::source_name(kernel);
     const EmbeddedKernel* const source = find_kernel(opencl::embedded_kernels(), name);
     if (source == nullptr || name == "probe") return {};
-    const std::string options = "-cl-std=CL1.2 -DGROUP_ITEMS=64" + std::string(opencl::math_options(kernel.math));
+    const std::string options = "-cl-std=CL1.2 " + opencl::defines_of(kernel, tile_height_of({}), false, false, 0) +
+                                std::string(opencl::math_options(kernel.math));
     std::string what =
         "OpenCL C with its includes resolved, as the driver's compiler gets it; the kernel is run_image. "
         "clBuildProgram gets '" +
         options + "', and also: ";
-    if (kernel.structure == Structure::cdt) what += "-DSTARTS_OUTSIDE for rays from outside; ";
-    what += "-DRAYS for given rays; -DSEARCH for single exit searches; -DSEGMENTS for all tets of given rays; "
-            "-DPERSISTENT for that schedule; "
-            "-cl-denorms-are-zero on processors; -cl-fp32-correctly-rounded-divide-sqrt where the device offers it";
+    if (kernel.task == Task::trace && kernel.structure == Structure::cdt)
+        what += "-DSTARTS_OUTSIDE for rays from outside; ";
+    if (kernel.task == Task::trace)
+        what += "-DRAYS for given rays; -DSEARCH for single exit searches; -DSEGMENTS for all tets of given rays; "
+                "-DTALLY for these with sums per tet; -DABSORB for the light of a medium; ";
+    if (traits_of(kernel.task).finds_hits) what += "-DPERSISTENT for that schedule; ";
+    what += "-cl-denorms-are-zero on processors; -cl-fp32-correctly-rounded-divide-sqrt where the device offers it";
     return {{name + ".cl", what,
              "clang -x cl -Xclang -finclude-default-header -fsyntax-only " + options + " " + name + ".cl",
              std::string(source->text())}};

@@ -2,6 +2,9 @@
 // share memory; LANES if it has subgroups, LARGE if it has a large buffer.
 #include "kernels/language/dialect_opencl.h"
 
+#define Real4 float4
+#define REAL4(a, b, c, d) ((float4)(a, b, c, d))
+#define LANE(vector, name) (vector).name
 #define DEFECT_WORDS __global const uint *restrict words,
 #define DEFECT_PASSED words,
 #define WORD(index) words[index]
@@ -40,13 +43,16 @@
 #include "kernels/defects/lane_stressors.h"
 #endif
 #ifdef LARGE
-#define FAR_FN(name) KERNEL_FN void name(__global uint* results, __global uint* large, uint item_count)
+#define FAR_FN(name)                                                                                                   \
+    KERNEL_FN void name(__global const uint* restrict words, __global uint* results, __global uint* large,             \
+                        uint item_count)
 #define FAR(index) large[index]
+#define FAR_END words[FAR_END_WORD]
 #include "kernels/defects/far_stressors.h"
 
 __kernel void run_defect(__global const uint* restrict words, __global uint* results, uint count, __global uint* large)
 {
-    GROUP_DEFECT(results, large, count);
+    GROUP_DEFECT(words, results, large, count);
 }
 #else
 

@@ -74,8 +74,7 @@ LaunchCase defect_case(std::string_view name, const DefectLaunch& launch)
     const auto words = defect_words(launch);
     made.inputs = {input("buffer", 0, "words", "what the kernel reads", std::span(words)),
                    input("value", 2, "count", "the number of items", std::span(&launch.items, 1))};
-    if (const Defect* const defect = find_defect(name); defect != nullptr && defect->large_words != 0)
-        made.lines.push_back("LARGE_BYTES " + std::to_string(defect->large_bytes()) + "u");
+    if (launch.large_words != 0) made.lines.push_back("LARGE_BYTES " + std::to_string(launch.large_bytes()) + "u");
     made.output = 1;
     return made;
 }

@@ -33,7 +33,7 @@ ProgramId defect_program(std::string_view name)
     ProgramId id{.source = "defects", .defines = (shares ? "-DGROUP_DEFECT=" : "-DDEFECT=") + std::string(name)};
     if (!shares || defect->need == DefectNeed::none) return id;
     if (defect->need == DefectNeed::ballots) id.defines += " -DLANES";
-    if (defect->need == DefectNeed::large_buffer)
+    if (defect->large_words != 0)
         id.defines += " -DLARGE";
     else
         id.standard = "CL3.0";
@@ -51,7 +51,6 @@ void require_for_defect(const FoundDevice& device, std::string_view name)
         throw Error(ErrorKind::unsupported, "it lacks cl_khr_subgroup_ballot");
     if (defect->need == DefectNeed::fences && !device.has_fences)
         throw Error(ErrorKind::unsupported, "its OpenCL C 3.0 lacks fences between groups");
-    if (defect->need == DefectNeed::large_buffer) require_large_buffer(*defect, device.facts);
 }
 
 Program defect_on(Context& context, std::string_view name, const ProgramCache& cache)
@@ -73,8 +72,7 @@ std::vector<std::uint32_t> DefectProgram::run(const DefectLaunch& launch) const
     const auto words = defect_words(launch);
     const std::size_t read_bytes = words.size() * sizeof(words[0]), written_bytes = results.size() * sizeof(results[0]);
     Context& context = *context_;
-    const Defect* const defect = find_defect(name_);
-    const std::uint64_t large_bytes = defect == nullptr ? 0 : defect->large_bytes();
+    const std::uint64_t large_bytes = launch.large_bytes();
     context.run("running " + name_, read_bytes + written_bytes + large_bytes, [&] {
         const cl::CommandQueue queue = context.make_queue();
         const cl::Buffer from(context.handle(), CL_MEM_READ_ONLY, read_bytes);

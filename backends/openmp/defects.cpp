@@ -2,7 +2,6 @@
 
 #include "core/base/error.h"
 #include "core/device/backend.h"
-#include "core/device/host.h"
 #include "kernels/layouts/defect_words.h"
 
 #include <array>
@@ -34,18 +33,6 @@ namespace {
 
 namespace tetrace::openmp {
 
-namespace {
-
-/// Nothing is set: only what the kernel writes takes memory.
-std::unique_ptr<std::uint32_t[]> large_buffer(std::string_view name)
-{
-    const Defect& defect = *find_defect(name);
-    require_large_buffer(defect, host_device());
-    return std::make_unique_for_overwrite<std::uint32_t[]>(defect.large_words);
-}
-
-} // namespace
-
 std::vector<std::uint32_t> words_of_defect(std::string_view name, const DefectLaunch& launch)
 {
     const auto words = defect_words(launch);
@@ -66,11 +53,12 @@ std::vector<std::uint32_t> words_of_defect(std::string_view name, const DefectLa
         return results;                                                                                                \
     }
 #define LANE_DEFECT GROUP_DEFECT
+// Nothing is set in a large buffer: only what the kernel writes takes memory.
 #define FAR_DEFECT(kernel)                                                                                             \
     if (name == #kernel) {                                                                                             \
-        const auto large = large_buffer(name);                                                                         \
+        const auto large = std::make_unique_for_overwrite<std::uint32_t[]>(launch.large_words);                        \
         for (std::uint32_t group = 0; group < launch.groups(); ++group)                                                \
-            kernel(results.data(), large.get(), launch.items, group, launch.group_items);                              \
+            kernel(words.data(), results.data(), large.get(), launch.items, group, launch.group_items);                \
         return results;                                                                                                \
     }
 #include "kernels/defects/defect_list.inc"

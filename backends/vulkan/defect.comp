@@ -1,6 +1,7 @@
 #version 450
 // A reduced kernel as a compute shader. DEFECT is its name, or GROUP_DEFECT, that of a kernel whose items share memory;
-// LANES if it has subgroups, LARGE if it has a large buffer. Compiled by glslangValidator -V --target-env vulkan1.1 -DDEFECT=<name>.
+// LANES if it has subgroups, LARGE if it has a large buffer. Compiled by glslangValidator -V --target-env vulkan1.1
+// -DDEFECT=<name>.
 #ifdef LANES
 #extension GL_KHR_shader_subgroup_ballot : require
 #endif
@@ -12,6 +13,9 @@ layout(std430, set = 0, binding = 0) readonly buffer Words
     uint words[];
 };
 
+#define Real4 vec4
+#define REAL4(a, b, c, d) vec4(a, b, c, d)
+#define LANE(vector, name) (vector).name
 #define DEFECT_WORDS
 #define DEFECT_PASSED
 #define WORD(index) words[index]
@@ -57,6 +61,7 @@ layout(std430, set = 0, binding = 2) coherent buffer Large
 };
 #define FAR_FN(name) void name()
 #define FAR(index) large[index]
+#define FAR_END words[FAR_END_WORD]
 #include "kernels/defects/far_stressors.h"
 #endif
 

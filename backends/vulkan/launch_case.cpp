@@ -78,7 +78,7 @@ LaunchCase tile_case(const Device& device, const KernelId& kernel, const PackedS
         made.inputs.push_back(case_input(array_place(in_texels, texels), buffers[array].name,
                                          "an array of the packed scene", buffers[array].bytes));
     }
-    if (kernel.task == Task::rays)
+    if (kernel.task != Task::trace)
         made.inputs.push_back(case_input(array_place(in_texels, rays_as_texels), "rays", "given rays, two quads each",
                                          std::as_bytes(rays)));
     made.output = OUTPUT_BINDING;
@@ -92,8 +92,7 @@ LaunchCase defect_case(std::string_view name, const DefectLaunch& launch)
     made.lines.push_back("PUSHED 0");
     const auto words = defect_words(launch);
     made.inputs = {case_input("buffer, 0", "words", "what the kernel reads", std::as_bytes(std::span(words)))};
-    if (const Defect* const defect = find_defect(name); defect != nullptr && defect->large_words != 0)
-        made.lines.push_back("LARGE_BYTES " + std::to_string(defect->large_bytes()) + "u");
+    if (launch.large_words != 0) made.lines.push_back("LARGE_BYTES " + std::to_string(launch.large_bytes()) + "u");
     made.output = 1;
     return made;
 }

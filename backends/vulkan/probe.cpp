@@ -59,7 +59,6 @@ void require_for_defect(const FoundDevice& device, std::string_view name)
     if (defect == nullptr) return;
     if (defect->need == DefectNeed::ballots && !device.has_ballots)
         throw Error(ErrorKind::unsupported, "its subgroups have no ballots in compute shaders");
-    if (defect->need == DefectNeed::large_buffer) require_large_buffer(*defect, device.facts);
 }
 
 } // namespace
@@ -71,8 +70,7 @@ std::vector<std::uint32_t> run_defect(const Context& context, std::string_view n
     const auto words = defect_words(launch);
     const std::span<std::byte> result_bytes = std::as_writable_bytes(std::span(results));
     const auto word_bytes = std::as_bytes(std::span(words));
-    const Defect* const defect = find_defect(name);
-    const std::uint64_t large_bytes = defect == nullptr ? 0 : defect->large_bytes();
+    const std::uint64_t large_bytes = launch.large_bytes();
     const bool is_large = large_bytes != 0;
     context.run("running " + std::string(name), word_bytes.size() + result_bytes.size() + large_bytes, [&] {
         const ProgramId id{.name = std::string(name),

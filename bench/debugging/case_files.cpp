@@ -5,6 +5,7 @@
 #include "bench/inspection/work_folder.h"
 #include "bench/options/browser_api.h"
 #include "bench/options/identity.h"
+#include "bench/rows/ray_store.h"
 #include "bench/rows/row_tracing.h"
 #include "bench/rows/rows.h"
 #include "bench/variants/variant_program.h"
@@ -12,7 +13,6 @@
 #include "core/base/files.h"
 #include "core/base/printable.h"
 #include "core/device/defects.h"
-#include "core/device/given_quads.h"
 #include "core/device/launch.h"
 #include "core/device/scene_buffers.h"
 #include "core/device/session.h"
@@ -121,15 +121,40 @@ std::vector<std::size_t> rays_of_tile(const LaunchParams& launch)
     return rays;
 }
 
-CaseOutput output_of_tile(const LaunchParams& launch, const std::vector<Hit>& hits)
+/// The sums per tet of these of the row's given rays alone, which its session has afterwards; empty if its task has
+/// none.
+std::vector<std::uint64_t> tally_of(RowRun& row, const std::vector<Quad>& quads, const std::vector<std::size_t>& rays)
+{
+    if (!traits_of(row.key.kernel.task).tallies) return {};
+    std::vector<Quad> some;
+    for (std::size_t list = 0; list < GIVEN_RAY_QUADS; ++list) // all directions, then all origins
+        for (const std::size_t ray : rays)
+            some.push_back(quads[list * (quads.size() / GIVEN_RAY_QUADS) + ray]);
+    row.session->set_rays(some);
+    std::vector<Hit> answers(rays.size());
+    const TraceJob job = job_of(row, 0);
+    static_cast<void>(row.session->trace(given_job(rays.size(), job.max_steps, job.any_hit), answers));
+    return row.session->tally();
+}
+
+/// hits: answers of all rays. tally: of the tile.
+CaseOutput output_of_tile(const LaunchParams& launch, const KernelId& kernel, const std::vector<Hit>& hits,
+                          const std::vector<std::uint64_t>& tally)
 {
     constexpr std::uint32_t division_ulps = 3; // SelfTest::allowed_ulps()
     const std::array<std::size_t, 1> rays = {hits.size()};
-    const OutputParts parts(rays, HIT_WORDS);
+    const OutputParts parts(rays, HIT_WORDS, 2 * tally.size());
     CaseOutput output{CaseWords(parts.words(), POISON), CaseWords(parts.words(), 0), POISON};
+    const auto sums = parts.tally(std::span(output.expected), 0);
+    for (std::size_t tet = 0; tet < tally.size(); ++tet) { // a kernel adds to what is there
+        const std::uint64_t sum = (std::uint64_t{POISON} << 32 | POISON) + tally[tet];
+        sums[2 * tet] = static_cast<std::uint32_t>(sum);
+        sums[2 * tet + 1] = static_cast<std::uint32_t>(sum >> 32);
+    }
     for (const std::size_t ray : rays_of_tile(launch)) {
         const std::size_t word = GUARD_WORDS + HIT_WORDS * ray;
         std::memcpy(&output.expected[word], &hits[ray], sizeof(Hit));
+        if (!traits_of(kernel.task).finds_hits) continue; // integers
         for (const std::size_t member : {offsetof(Hit, t), offsetof(Hit, u), offsetof(Hit, v)})
             output.tolerances[word + member / sizeof(std::uint32_t)] = division_ulps;
     }
@@ -138,10 +163,8 @@ CaseOutput output_of_tile(const LaunchParams& launch, const std::vector<Hit>& hi
 
 std::vector<Quad> quads_of_case(SceneWork& scene, const RowRun& row)
 {
-    if (row.key.kernel.task != Task::rays) return {};
-    const RaySet& rays = rays_of(scene, row.key, 0);
-    return row.key.kernel.structure == Structure::cdt ? given_quads(rays, row.packed->data)
-                                                      : given_quads_offset(rays, scene.loaded().scene.mesh);
+    if (!traits_of(row.key.kernel.task).takes_rays) return {};
+    return scene.given_rays().rows(scene, row.key, &row.packed->data, 0);
 }
 
 std::string title_of_tile(const SceneWork& scene, const RowKey& key, const Backend& backend, const Options& options)
@@ -185,12 +208,15 @@ DumpedCase tile_case(const Options& options, const Backend& backend)
     const std::uint32_t columns = (job.width + TILE_WIDTH - 1) / TILE_WIDTH;
     launch.first_tile = number / job.width / launch.tile_height * columns + number % job.width / TILE_WIDTH;
     const WorkFolder folder;
-    auto made = backend.tile_case(target, key.kernel, packed, launch, quads_of_case(scene, row),
+    const std::vector<Quad> quads = quads_of_case(scene, row);
+    auto made = backend.tile_case(target, key.kernel, packed, launch, quads,
                                   variant_file(options, backend.name(), key.kernel, folder));
     if (!made) refuse_case(backend);
     if (!options.changes.empty())
         made->program.what += fmt::format(", with the changes {}", fmt::join(options.changes, ", "));
-    return files_of_case(*made, output_of_tile(launch, hits), title_of_tile(scene, key, backend, options));
+    const auto tally = tally_of(row, quads, rays_of_tile(launch));
+    return files_of_case(*made, output_of_tile(launch, key.kernel, hits, tally),
+                         title_of_tile(scene, key, backend, options));
 }
 
 } // namespace

@@ -36,8 +36,8 @@ void run_on(DefectRun& run, Backend& runner)
     const Stopwatch watch;
     try {
         for (const DefectLaunch& launch : run.defect->launches()) {
-            run.launch = launch;
-            judge(run, runner.run_defect(run.device_index, run.defect->name, launch));
+            run.launch = launch_on(run.device, *run.defect, launch);
+            judge(run, runner.run_defect(run.device_index, run.defect->name, run.launch));
             if (run.sight == DefectSight::seen) break;
         }
     } catch (const Error& error) {
@@ -174,6 +174,7 @@ struct ShownRun {
     std::string defect, what, known, backend;
     std::uint64_t index = 0, items = 0, wrong = 0;
     std::uint64_t group_items = 0; ///< of a stressor that was launched
+    std::uint64_t large_words = 0; ///< of the largest buffer that the device admits, if it has one
     std::string device, type, driver, implementation, outcome;
     std::string detail;    ///< the first wrong word, or the reason; empty if all is as it should be
     bool is_known = false; ///< whether seeing it was expected
@@ -196,9 +197,18 @@ std::string wrong_text(std::uint64_t place, std::uint64_t items, std::uint64_t w
 }
 
 /// Of a stressor: the launch that was wrong or failed, to append; nothing if there was none.
-std::string launch_text(std::string_view name, std::uint64_t items, std::uint64_t group_items)
+std::string launch_text(std::string_view name, std::uint64_t items, std::uint64_t group_items,
+                        std::uint64_t large_words)
 {
-    return group_items == 0 ? std::string() : fmt::format(" (dump --defect {}:{}:{})", name, items, group_items);
+    if (group_items == 0) return {};
+    return fmt::format(" (dump --defect {}:{}:{}{})", name, items, group_items,
+                       large_words == 0 ? "" : fmt::format(":{}", large_words));
+}
+
+/// 0 if the kernel has no buffer whose size the device decides.
+std::uint32_t decided_words(const DefectRun& run)
+{
+    return run.defect->need == DefectNeed::largest_buffer ? run.launch.large_words : 0;
 }
 
 bool is_stressor(std::string_view name)
@@ -217,13 +227,14 @@ ShownRun read_run(const ResultValue& value)
     run.index = value.at("device_index").count();
     if (const auto items = value.find("items")) run.items = items->count();
     if (const auto group = value.find("group_items")) run.group_items = group->count();
+    if (const auto words = value.find("large_words")) run.large_words = words->count();
     run.device = value.at("device").line();
     run.type = value.at("type").line();
     run.driver = line_or_nothing(value, "driver");
     run.implementation = line_or_nothing(value, "implementation");
     run.outcome = value.at("outcome").line();
     run.detail = printable_text(value.text_at("reason"));
-    const std::string launch = launch_text(run.defect, run.items, run.group_items);
+    const std::string launch = launch_text(run.defect, run.items, run.group_items, run.large_words);
     if (run.outcome == name_of(DefectSight::error)) run.detail += launch;
     if (!run.is_seen()) return run;
     const auto count = value.find("wrong"); // wrong_items has only the first
@@ -324,6 +335,7 @@ nlohmann::json run_json(const DefectRun& run)
                              {"type", name_of(run.device.kind)}, {"outcome", name_of(run.sight)}};
     if (run.launch.items != 0) object["items"] = run.launch.items;
     if (run.launch.items != 0 && run.defect->is_stressor) object["group_items"] = run.launch.group_items;
+    if (decided_words(run) != 0) object["large_words"] = decided_words(run);
     if (!run.device.driver.empty()) object["driver"] = run.device.driver;
     if (!run.device.implementation.empty()) object["implementation"] = run.device.implementation;
     if (!run.device.library.empty()) object["library"] = run.device.library;
@@ -352,8 +364,9 @@ std::string summary(const std::vector<ShownRun>& runs)
 /// The first wrong word, or the reason; empty if all is as it should be.
 std::string detail_of(const DefectRun& run)
 {
-    const std::string launch =
-        run.defect->is_stressor ? launch_text(run.defect->name, run.launch.items, run.launch.group_items) : "";
+    const std::string launch = run.defect->is_stressor ? launch_text(run.defect->name, run.launch.items,
+                                                                     run.launch.group_items, decided_words(run))
+                                                       : "";
     if (run.sight == DefectSight::error) return run.reason + launch;
     if (run.sight != DefectSight::seen) return run.reason;
     const std::uint32_t item = run.wrong.front();

@@ -97,6 +97,32 @@ std::vector<KernelFile> page_files(const KernelId& asked)
     return files;
 }
 
+/// The kernel with the task of --entry.
+KernelId kernel_of_entry(const Options& options, KernelId kernel)
+{
+    require_one(options, "--entry", options.entries);
+    if (options.entries.empty()) return kernel;
+    kernel.task = value_named<Task>(name_of(options.entries.front())).value_or(Task::trace); // outside and inside
+    if (!has_task(kernel))
+        throw Error(ErrorKind::usage,
+                    fmt::format("dump: --entry: {} on {} has no entry point '{}'", name_of(kernel.method),
+                                name_of(kernel.layout), name_of(options.entries.front())));
+    return kernel;
+}
+
+std::string_view rays_of_task(Task task)
+{
+    switch (task) {
+    case Task::trace: return "primary rays";
+    case Task::rays: return "given rays";
+    case Task::search: return "exit searches";
+    case Task::segments: return "all tets of given rays";
+    case Task::tally: return "sums of given rays' lengths per tet";
+    case Task::absorb: return "given rays in a medium";
+    }
+    return "";
+}
+
 bool is_kept(const Options& options, const Backend& backend, std::size_t index)
 {
     const Device& device = backend.devices()[index];
@@ -116,12 +142,12 @@ std::vector<KernelFile> dumped_files(const Options& options, const std::vector<B
     const Backend& backend = chosen(options, backends);
     std::vector<KernelFile> files = backend.kernel_files(kernel);
     if (!options.changes.empty() && !files.empty()) {
-        const VariantProgram variant(backend.name(), kernel);
-        return {variant.text_file(
-            variant.text().with(variant.text().named(options.changes)),
-            fmt::format("the kernel's text, with the changes {}; the command is that of primary rays, "
-                        "and the text has all tasks",
-                        fmt::join(options.changes, ", ")))};
+        const KernelId entered = kernel_of_entry(options, kernel);
+        const VariantProgram variant(backend.name(), entered);
+        return {variant.text_file(variant.text().with(variant.text().named(options.changes)),
+                                  fmt::format("; with the changes {}. The command is for {}; the text has all "
+                                              "entry points",
+                                              fmt::join(options.changes, ", "), rays_of_task(entered.task)))};
     }
     if (files.empty())
         throw Error(

@@ -19,7 +19,7 @@ KernelId our_kernel(const Options& options)
 {
     for (const auto& [option, count] :
          {std::pair("--order", options.orders.size()), std::pair("--rays", options.rays.size()),
-          std::pair("--ray-order", options.ray_orders.size())})
+          std::pair("--ray-order", options.ray_orders.size()), std::pair("--task", options.tasks.size())})
         if (count > 1)
             throw Error(ErrorKind::usage, fmt::format("{}: {} accepts one value here", name_of(options.verb), option));
     const KernelId kernel = one_kernel(options);

@@ -47,15 +47,15 @@ Path own_path(const RowRun& row, const DifferingRay& ray)
     }
 }
 
-} // namespace
-
-std::string trace_command(const RowRun& row, std::uint32_t view, std::uint32_t x, std::uint32_t y)
+/// verb: of a command on one ray of the row.
+std::string ray_command(const char* verb, const RowRun& row, std::uint32_t view, std::uint32_t x, std::uint32_t y)
 {
     if (row.scene == nullptr || row.scene->arguments().empty() || !is_portable(row.key.kernel)) return {};
-    if (!traits_of(row.key.kernel.task).finds_hits) return {};
     const KernelId& kernel = row.key.kernel;
-    std::string text = fmt::format("tetrace trace {} --view {} --pixel {},{} --method {} --layout {}",
+    std::string text = fmt::format("tetrace {} {} --view {} --pixel {},{} --method {} --layout {}", verb,
                                    row.scene->arguments(), view, x, y, name_of(kernel.method), name_of(kernel.layout));
+    if (const Task task = asked_task(kernel.task); task != Task::trace)
+        text += fmt::format(" --task {}", name_of(task));
     if (kernel.math != MathMode::exact) text += fmt::format(" --math {}", name_of(kernel.math));
     if (row.key.rays != RayKind::primary) text += fmt::format(" --rays {}", name_of(row.key.rays));
     if (row.key.ray_order != RayOrder::tiles) text += fmt::format(" --ray-order {}", name_of(row.key.ray_order));
@@ -63,6 +63,18 @@ std::string trace_command(const RowRun& row, std::uint32_t view, std::uint32_t x
     if (kernel.schedule != Schedule::tiles) text += fmt::format(" --schedule {}", name_of(kernel.schedule));
     text += fmt::format(" --backend {}", row.key.backend);
     return row.key.device == 0 ? text : text + fmt::format(" --device {}:{}", row.key.backend, row.key.device);
+}
+
+} // namespace
+
+std::string trace_command(const RowRun& row, std::uint32_t view, std::uint32_t x, std::uint32_t y)
+{
+    return traits_of(row.key.kernel.task).finds_hits ? ray_command("trace", row, view, x, y) : std::string();
+}
+
+std::string dump_command(const RowRun& row, std::uint32_t view, std::uint32_t x, std::uint32_t y)
+{
+    return ray_command("dump", row, view, x, y);
 }
 
 void note_walks(RowRun& row)

@@ -36,7 +36,7 @@ std::string defect_names()
 /// What chosen_defect() accepts after a name.
 constexpr const char* launch_of_defect =
     "NAME:ITEMS:GROUP, ITEMS 1 to 1000000 and GROUP 1 to 128 of a stressor (16 and 16 of a reduced kernel), at most "
-    "65535 groups";
+    "65535 groups; of words_at_the_end, NAME:ITEMS:GROUP:WORDS with the words of its buffer too";
 
 void set_defect(Options& options, const std::string& text)
 {
@@ -59,8 +59,10 @@ std::vector<OptionRow> inspect_options()
         {experiments, "--entry", "NAME",
          "Keep the entry points of this kind: 'outside' and 'inside', primary rays that start outside the domain or "
          "in a tet; 'rays', given rays; 'search', exit searches of table5; 'segments', given rays with all their tets; "
-         "'tally', the same with sums per tet; 'absorb', the light of a medium. Default: all.",
-         bit(Verb::inspect), true, append("--entry", &Options::entries)},
+         "'tally', the same with sums per tet; 'absorb', the light of a medium. 'dump' writes the command of one of "
+         "these "
+         "with a variant's text. Default: all; of 'dump', outside.",
+         bit(Verb::inspect) | bit(Verb::dump), true, append("--entry", &Options::entries)},
         {"Compilers", "--require-target", "GPU",
          "Fail with exit code 3 unless this target's compiler is here and compiles every program; "
          "or the driver, for a device of --backend and --device as 'tetrace devices' labels it (vulkan:1).",

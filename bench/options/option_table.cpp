@@ -214,7 +214,7 @@ std::vector<OptionRow> row_options()
          "'absorb', the light of a medium that glows and absorbs, with a value and a density per tet. These are for "
          "maria and project, in exact mode, and for rays of kinds primary, diffuse and random, all of which are "
          "given. Default: trace.",
-         measuring | bit(Verb::page), true,
+         measuring | bit(Verb::dump) | bit(Verb::page), true,
          append("--task", &Options::tasks, {Task::trace, Task::segments, Task::tally, Task::absorb})},
         {"Rows", "--rays", "KIND",
          "Trace rays of this kind: 'primary', the image's own, made by the kernels. The others are made on the "

@@ -161,11 +161,14 @@ void check_dump(const Options& options)
     if (options.backends.size() != 1) throw Error(ErrorKind::usage, "dump: --backend needs one backend: whose files?");
     if (!options.out) throw Error(ErrorKind::usage, "dump: --out FOLDER is missing: where to?");
     if (!options.scenes.empty()) check_ray(options);
+    if (!options.entries.empty() && (options.changes.empty() || !options.scenes.empty()))
+        throw Error(ErrorKind::usage, "dump: --entry chooses the command of a variant's text: it goes with --variant, "
+                                      "and without --scene, where --task and --rays choose the kernel");
 }
 
 /// What `dump` accepts without a case, and what a case of a defect accepts; the other options choose a scene's case.
-constexpr std::string_view of_files[] = {"--backend", "--out",    "--method", "--layout",
-                                         "--math",    "--device", "--variant"};
+constexpr std::string_view of_files[] = {"--backend", "--out",    "--method",  "--layout",
+                                         "--math",    "--device", "--variant", "--entry"};
 constexpr std::string_view of_defects[] = {"--backend", "--out", "--defect"};
 
 void check_case(const Options& options, const CLI::App& app)

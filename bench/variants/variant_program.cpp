@@ -32,10 +32,10 @@ VariantProgram::Source VariantProgram::source_of(const std::string& backend, con
     const std::string name = fmt::format("{}_{}", name_of(kernel.method), name_of(kernel.layout));
     const std::string with_math = fmt::format("{}_{}", name, name_of(kernel.math));
     const Source known[] = {
-        {name + ".cl", {}, {}, {}, {}},
-        {name + ".comp", {}, fmt::format("{}_{}.spv", with_math, name_of(kernel.task)), {}, "glslang-tools"},
-        {name + ".cu", {}, with_math + ".ptx", {}, "nvidia-cuda-toolkit"},
-        {with_math + ".cpp", {}, with_math + ".so", {}, "g++, or set CXX"},
+        {name + ".cl", {}, {}, {}, {}, {}, {}},
+        {name + ".comp", {}, fmt::format("{}_{}.spv", with_math, name_of(kernel.task)), {}, "glslang-tools", {}, {}},
+        {name + ".cu", {}, with_math + ".ptx", {}, "nvidia-cuda-toolkit", {}, {}},
+        {with_math + ".cpp", {}, with_math + ".so", {}, "g++, or set CXX", {}, {}},
     };
     const auto files = backend_named(backend, direct_backends()).kernel_files(kernel);
     for (Source source : known) {
@@ -47,6 +47,8 @@ VariantProgram::Source VariantProgram::source_of(const std::string& backend, con
         if (maker == files.end() && !source.program.empty()) continue;
         source.text = text->bytes;
         if (!source.program.empty()) source.command = maker->command;
+        source.what = text->what;
+        source.readme_command = source.command.empty() ? text->command : source.command;
         return source;
     }
     throw Error(ErrorKind::unsupported,

@@ -21,17 +21,19 @@ public:
     /// Error{driver} with its messages if its compiler refuses the text, and Error{missing} if it is not installed.
     [[nodiscard]] std::filesystem::path write(const std::string& text, const std::filesystem::path& folder) const;
 
-    /// A text with the command that makes its program.
-    [[nodiscard]] KernelFile text_file(const std::string& text, const std::string& what) const
+    /// A text with the command that makes its program, or for OpenCL that checks it. more: follows what the unchanged
+    /// text is.
+    [[nodiscard]] KernelFile text_file(const std::string& text, const std::string& more) const
     {
-        return {source_.name, what, source_.command, text};
+        return {source_.name, source_.what + more, source_.readme_command, text};
     }
 
 private:
     struct Source {
         std::string name, text;
-        std::string program, command; ///< that makes the program of the text; empty: the text is the program
-        std::string package;          ///< that has the compiler
+        std::string program, command;     ///< that makes the program of the text; empty: the text is the program
+        std::string package;              ///< that has the compiler
+        std::string what, readme_command; ///< of the text, as kernel_files() has them, or that makes the program
     };
     static Source source_of(const std::string& backend, const KernelId& kernel);
     explicit VariantProgram(Source source) : source_(std::move(source)), text_(source_.text) {}

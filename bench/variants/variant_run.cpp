@@ -89,11 +89,9 @@ private:
         const std::string& backend = row_->key.backend;
         if (backend != "opencl" && backend != "vulkan") return VariantTrials::command_of(failure); // no case of a ray
         const DifferingRay ray = failure.first_different.value_or(DifferingRay{row_->scene->view_numbers().front()});
-        const std::string trace = trace_command(*row_, ray.view, ray.x, ray.y);
-        constexpr std::string_view verb = "tetrace trace";
-        if (!trace.starts_with(verb)) return {};
-        return fmt::format("tetrace dump{} --variant {} --out case", trace.substr(verb.size()),
-                           fmt::join(failure.reduced, ","));
+        const std::string dump = dump_command(*row_, ray.view, ray.x, ray.y);
+        if (dump.empty()) return {};
+        return fmt::format("{} --variant {} --out case", dump, fmt::join(failure.reduced, ","));
     }
 
     RowRun* row_;

@@ -108,9 +108,12 @@ std::vector<std::size_t> VariantTrials::reduce(const std::vector<std::size_t>& c
 std::string VariantTrials::command_of(const VariantFailure& failure) const
 {
     const RowKey& key = result_.row.key;
-    return fmt::format("tetrace dump --backend {} --method {} --layout {}{} --variant {} --out case", key.backend,
+    const Task task = key.kernel.task;
+    return fmt::format("tetrace dump --backend {} --method {} --layout {}{}{} --variant {} --out case", key.backend,
                        name_of(key.kernel.method), name_of(key.kernel.layout),
-                       key.kernel.math == MathMode::exact ? "" : " --math fast", fmt::join(failure.reduced, ","));
+                       key.kernel.math == MathMode::exact ? "" : " --math fast",
+                       task == Task::trace ? "" : fmt::format(" --entry {}", name_of(task)),
+                       fmt::join(failure.reduced, ","));
 }
 
 std::vector<VariantRow> run_trials(const std::vector<std::unique_ptr<VariantTrials>>& trials, const Options& options,

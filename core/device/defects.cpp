@@ -108,6 +108,10 @@ std::span<const Defect> all_defects()
 
 /// Of a launch: what Vulkan guarantees.
 constexpr std::uint32_t max_groups = 65'535;
+/// Of a large buffer: the first words, and those before and after a boundary.
+constexpr std::uint32_t min_large_words = 3 * FAR_ROOM;
+constexpr std::uint64_t large_unit_bytes = 4096;
+constexpr std::uint64_t max_large_bytes = (std::uint64_t{1} << 34) - large_unit_bytes;
 
 std::optional<ChosenDefect> chosen_defect(std::string_view text)
 {
@@ -119,28 +123,41 @@ std::optional<ChosenDefect> chosen_defect(std::string_view text)
     const char* const end = text.data() + text.size();
     const auto items = std::from_chars(text.data() + colon + 1, end, launch.items);
     if (items.ec != std::errc() || items.ptr == end || *items.ptr != ':') return std::nullopt;
-    const auto group = std::from_chars(items.ptr + 1, end, launch.group_items);
+    auto last = std::from_chars(items.ptr + 1, end, launch.group_items);
+    launch.large_words = defect->large_words;
+    if (last.ec == std::errc() && last.ptr != end && *last.ptr == ':' && defect->need == DefectNeed::largest_buffer)
+        last = std::from_chars(last.ptr + 1, end, launch.large_words);
     const DefectLaunch& largest = defect->launches().back();
     const bool is_within = launch.items >= 1 && launch.items <= largest.items && launch.group_items >= 1 &&
-                           launch.group_items <= largest.group_items && launch.groups() <= max_groups;
-    if (group.ec != std::errc() || group.ptr != end || !is_within) return std::nullopt;
+                           launch.group_items <= largest.group_items && launch.groups() <= max_groups &&
+                           (defect->large_words == 0 || launch.large_words >= min_large_words);
+    if (last.ec != std::errc() || last.ptr != end || !is_within) return std::nullopt;
     return ChosenDefect{defect, launch};
 }
 
-void require_large_buffer(const Defect& defect, const Device& device)
+DefectLaunch launch_on(const Device& device, const Defect& defect, DefectLaunch launch)
 {
-    const std::uint64_t needed = defect.large_bytes();
-    const auto require = [&](const std::string& what, std::uint64_t bytes) {
-        if (bytes < needed)
+    if (defect.large_words == 0) return launch;
+    launch.large_words = defect.large_words;
+    const bool takes_largest = defect.need == DefectNeed::largest_buffer;
+    if (takes_largest) launch.large_words = min_large_words;
+    std::uint64_t admitted = max_large_bytes;
+    const auto limit = [&](const std::string& what, std::uint64_t bytes) {
+        if (bytes < launch.large_bytes())
             throw Error(ErrorKind::unsupported, what + " " + std::to_string(bytes >> 20) +
-                                                    " MiB, and the kernel needs " + std::to_string(needed >> 20) +
-                                                    " MiB");
+                                                    " MiB, and the kernel needs " +
+                                                    std::to_string(launch.large_bytes() >> 20) + " MiB");
+        admitted = std::min(admitted, bytes);
     };
-    if (device.max_buffer_bytes != 0) require("it admits buffers of", device.max_buffer_bytes);
+    if (device.max_buffer_bytes != 0) limit("it admits buffers of", device.max_buffer_bytes);
     if (device.kind == DeviceKind::gpu)
-        require("half of its memory is", device.memory_bytes / 2);
+        limit("half of its memory is", device.memory_bytes / 2);
     else
-        require("half of the free memory is", available_memory_bytes() / 2);
+        limit("half of the free memory is", available_memory_bytes() / 2);
+    if (takes_largest)
+        launch.large_words =
+            static_cast<std::uint32_t>(admitted / large_unit_bytes * (large_unit_bytes / sizeof(std::uint32_t)));
+    return launch;
 }
 
 const Defect* find_defect(std::string_view name)
@@ -155,6 +172,7 @@ std::vector<std::uint32_t> defect_words(const DefectLaunch& launch)
     std::vector<std::uint32_t> counting(word_count);
     std::iota(counting.begin(), counting.end(), 0u);
     counting.push_back(launch.items);
+    counting.push_back(launch.large_words);
     return counting;
 }
 
@@ -175,7 +193,7 @@ std::span<const DefectLaunch> Defect::launches() const
 
 DefectLaunch Defect::case_launch() const
 {
-    return is_stressor ? DefectLaunch{64, 64} : DefectLaunch{};
+    return is_stressor ? DefectLaunch{64, 64, large_words} : DefectLaunch{};
 }
 
 std::vector<std::uint32_t> expected_words(const Defect& defect, const DefectLaunch& launch)

@@ -12,14 +12,17 @@ namespace tetrace {
 /// How many items a kernel has, and how many of them are a work group; the last group may have fewer.
 struct DefectLaunch {
     std::uint32_t items = 16, group_items = 16;
+    std::uint32_t large_words = 0; ///< of a buffer that only the kernel sees (kernels/defects/far_stressors.h)
 
     [[nodiscard]] std::uint32_t groups() const { return (items + group_items - 1) / group_items; }
+    [[nodiscard]] std::uint64_t large_bytes() const { return std::uint64_t{large_words} * sizeof(std::uint32_t); }
 };
 
 struct Device; // core/device/backend.h
 
-/// What a stressor needs that not every device has: ballots of subgroups; a fence between groups; a large buffer.
-enum class DefectNeed { none, ballots, fences, large_buffer };
+/// What a stressor needs that not every device has: ballots of subgroups; a fence between groups; a large buffer, of a
+/// fixed size or as large as the device admits.
+enum class DefectNeed { none, ballots, fences, large_buffer, largest_buffer };
 
 /// A defect of a driver's compiler, reduced to a small kernel (kernels/defects/defects.h, in every language), or a
 /// stressor (kernels/defects/stressors.h). Each item returns a word; of some stressors, all groups together return
@@ -36,12 +39,10 @@ struct Defect {
     std::vector<std::uint32_t> (*expected_output)(const DefectLaunch& launch) = nullptr;
     std::uint32_t shared_words = 0; ///< of all groups, in the output after those of the items
     DefectNeed need = DefectNeed::none;
-    std::uint32_t large_words = 0; ///< of a buffer that only the kernel sees (kernels/defects/far_stressors.h); else 0
+    std::uint32_t large_words = 0; ///< of its large buffer; of the largest one, those of a case
 
-    [[nodiscard]] std::uint64_t large_bytes() const { return std::uint64_t{large_words} * sizeof(std::uint32_t); }
-
-    /// Those to be run: one group of 16 for a reduced kernel; for a stressor 1 to 10^6 items, in groups of several
-    /// sizes.
+    /// Those to be run, as launch_on() completes them: one group of 16 for a reduced kernel; for a stressor 1 to 10^6
+    /// items, in groups of several sizes.
     [[nodiscard]] std::span<const DefectLaunch> launches() const;
     /// The usual one of a case without tetrace: one group.
     [[nodiscard]] DefectLaunch case_launch() const;
@@ -56,17 +57,19 @@ struct ChosenDefect {
     DefectLaunch launch;
 };
 /// As `dump --defect` names them: "zoo_of_exits" with its case_launch(), or "zoo_of_exits:4096:32", items and those of
-/// a group. Empty if there is no such kernel, or if its launch is larger than any of launches().
+/// a group; "words_at_the_end:4096:32:33554432" with the words of the largest buffer. Empty if there is no such kernel,
+/// if its launch is larger than any of launches(), or the buffer too small for it.
 [[nodiscard]] std::optional<ChosenDefect> chosen_defect(std::string_view text);
 
-/// Throws Error{unsupported} if the device's largest buffer, or half of the memory that it may have, is less than the
-/// kernel's large buffer.
-void require_large_buffer(const Defect& defect, const Device& device);
+/// The launch on this device: with its large buffer, if the kernel has one. Throws Error{unsupported} if that is larger
+/// than the device's largest buffer, or than half of the memory that the device may have. A buffer that is to be as
+/// large as both admit has a multiple of 4 KiB, 16 GiB less 4 KiB at most: the kernel's words are numbered by 32 bits.
+[[nodiscard]] DefectLaunch launch_on(const Device& device, const Defect& defect, DefectLaunch launch);
 
 /// Null if there is none of that name.
 [[nodiscard]] const Defect* find_defect(std::string_view name);
 
-/// The words that every kernel reads: 0, 1, ... 63, and the number of items.
+/// The words that every kernel reads: 0, 1, ... 63, the number of items, and that of the words of a large buffer.
 [[nodiscard]] std::vector<std::uint32_t> defect_words(const DefectLaunch& launch);
 
 /// How many words the kernel of that name writes, which begin as zeros: its items', then those of all groups.

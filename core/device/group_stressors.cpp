@@ -140,8 +140,9 @@ Output words_past(const DefectLaunch& launch)
     return words;
 }
 
-/// bytes: the boundary.
-constexpr Defect words_past_boundary(std::string_view name, std::string_view what, std::uint64_t bytes)
+/// bytes: the boundary; of the largest buffer, the size of a case, which Vulkan and OpenCL guarantee.
+constexpr Defect words_past_boundary(std::string_view name, std::string_view what, std::uint64_t bytes,
+                                     DefectNeed need = DefectNeed::large_buffer)
 {
     return {.name = name,
             .what = what,
@@ -149,8 +150,9 @@ constexpr Defect words_past_boundary(std::string_view name, std::string_view wha
             .expected = nullptr,
             .is_stressor = true,
             .expected_output = words_past,
-            .need = DefectNeed::large_buffer,
-            .large_words = static_cast<std::uint32_t>(bytes / sizeof(std::uint32_t)) + FAR_ROOM};
+            .need = need,
+            .large_words = static_cast<std::uint32_t>(bytes / sizeof(std::uint32_t)) +
+                           (need == DefectNeed::large_buffer ? FAR_ROOM : 0)};
 }
 
 } // namespace
@@ -206,6 +208,8 @@ std::span<const Defect> group_stressors()
                             std::uint64_t{1} << 26),
         words_past_boundary("words_past_2_gib", "words of a buffer before and after byte 2^31", std::uint64_t{1} << 31),
         words_past_boundary("words_past_4_gib", "words of a buffer before and after byte 2^32", std::uint64_t{1} << 32),
+        words_past_boundary("words_at_the_end", "the first and the last words of the largest buffer that is admitted",
+                            std::uint64_t{1} << 27, DefectNeed::largest_buffer),
     };
     return stressors;
 }

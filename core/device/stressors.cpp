@@ -130,7 +130,8 @@ std::uint32_t lost_in_sums(std::uint32_t item)
     const double b = (2 * ((item * 747796405 + item % 64) % 2048) + 1) / 4096.0;
     const auto sum = static_cast<float>(a + b); // doubles hold the sum and its error
     const auto lost = static_cast<float>(a + b - sum);
-    return hash_of_floats({sum, lost, lost, lost, lost, lost, lost, lost, lost, -lost, -lost});
+    return hash_of_floats(
+        {sum, lost, lost, lost, lost, lost, lost, lost, lost, -lost, -lost, lost, lost, -lost, -lost});
 }
 
 std::uint32_t lost_in_products(std::uint32_t item)
@@ -139,7 +140,7 @@ std::uint32_t lost_in_products(std::uint32_t item)
     const std::uint64_t b = 8388609 + 2 * ((item * 747796405 + item % 64 * 65536) % 4194304);
     const auto product = static_cast<float>(a * b);
     const auto lost = static_cast<float>(static_cast<std::int64_t>(a * b) - static_cast<std::int64_t>(product));
-    return hash_of_floats({product, lost, lost, 0.0f, lost, lost, lost, lost, -lost, -lost});
+    return hash_of_floats({product, lost, lost, 0.0f, lost, lost, lost, lost, -lost, -lost, lost, lost, -lost, -lost});
 }
 
 std::uint32_t denormals_copied(std::uint32_t item)
@@ -200,9 +201,9 @@ std::span<const Defect> all_stressors()
          "ROCm#1182, DXC#5302, DXC#6561, compute-runtime#394", zoo_of_exits, true},
         {"loops_that_data_end", "loops that only data end, and bound checks after them",
          "wgpu#4972, wgpu#6528, DXC#6721", loops_that_data_end, true},
-        {"lost_in_sums", "what float sums lose (TwoSum, Dekker), in many spellings",
+        {"lost_in_sums", "what float sums lose (TwoSum, Dekker), in many spellings, that of vectors too",
          "slang#11933, SPIRV-Cross#1748, MoltenVK#1209", lost_in_sums, true},
-        {"lost_in_products", "what float products lose (Dekker's TwoProd), in many spellings",
+        {"lost_in_products", "what float products lose (Dekker's TwoProd), in many spellings, that of vectors too",
          "slang#11933, SPIRV-Cross#1748, MoltenVK#1209", lost_in_products, true},
         {"denormals_copied", "denormals through an array", "clspv#1646", denormals_copied, true},
         {"denormals_selected", "denormals through a select", "clspv#1646", denormals_selected, true},

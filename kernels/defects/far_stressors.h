@@ -1,6 +1,6 @@
 // Stressors of a large buffer, in the words of group_stressors.h, after which it is included. Also defined by the entry
-// file: FAR_FN(name), the head of such a function; FAR(index), a word of that buffer, of which nothing is set. It has
-// FAR_ROOM words after the boundary.
+// file: FAR_FN(name), the head of such a function; FAR(index), a word of that buffer, of which nothing is set; FAR_END,
+// how many words it has: FAR_ROOM after a fixed boundary.
 
 // A word of each item: among the first, or next to the boundary, on either side.
 KERNEL_FN uint far_place(uint boundary, uint side, uint item)
@@ -37,7 +37,10 @@ FAR_FN(words_past_64_mib){WORDS_PAST(0x1000000u)}
 FAR_FN(words_past_2_gib){WORDS_PAST(0x20000000u)}
 
 // 32 bits of bytes.
-FAR_FN(words_past_4_gib)
+FAR_FN(words_past_4_gib){WORDS_PAST(0x40000000u)}
+
+// Of the largest buffer that the device admits: the last word is the last item's, which may have no result.
+FAR_FN(words_at_the_end)
 {
-    WORDS_PAST(0x40000000u)
+    WORDS_PAST(FAR_END - (ITEM_COUNT + GROUP_SIZE - 1u) / GROUP_SIZE * GROUP_SIZE)
 }

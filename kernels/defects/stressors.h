@@ -177,6 +177,14 @@ KERNEL_FN uint loops_that_data_end(DEFECT_WORDS uint item)
     return ((WORD(place) * 64u + odd_steps) * 2048u + read) ^ (item * 2654435761u);
 }
 
+// The bits of a vector's four numbers. Real4, REAL4(a, b, c, d) and LANE(vector, x) to w are defined by the entry file:
+// the language's own vector, or in CUDA, whose vectors lack operators, a struct with some.
+#define HASH_LANES(hash, vector)                                                                                       \
+    hash = hash * 31u + as_bits(LANE(vector, x));                                                                      \
+    hash = hash * 31u + as_bits(LANE(vector, y));                                                                      \
+    hash = hash * 31u + as_bits(LANE(vector, z));                                                                      \
+    hash = hash * 31u + as_bits(LANE(vector, w));
+
 // What a float sum loses (TwoSum, and Dekker's for |a| > |b|), in every spelling that a program may have.
 KERNEL_FN real lost_in_sum(real a, real b)
 {
@@ -211,7 +219,13 @@ KERNEL_FN uint lost_in_sums(DEFECT_WORDS uint item)
     hash = hash * 31u + as_bits(dekker);
     hash = hash * 31u + as_bits(selected);
     hash = hash * 31u + as_bits(lost_in_sum(a, b));
-    real firsts[4]; // as lanes of a vector
+    Real4 first = REAL4(a, b, -a, -b);
+    Real4 second = REAL4(b, a, -b, -a);
+    PRECISE Real4 sums = first + second;
+    PRECISE Real4 parts = sums - first;
+    PRECISE Real4 lost_of_each = (first - (sums - parts)) + (second - parts);
+    HASH_LANES(hash, lost_of_each)
+    real firsts[4]; // of which a compiler may make a vector
     real seconds[4];
     for (uint i = 0u; i < 4u; i++) {
         real sign = i < 2u ? real(1.0f) : real(-1.0f);
@@ -263,7 +277,20 @@ KERNEL_FN uint lost_in_products(DEFECT_WORDS uint item)
     hash = hash * 31u + as_bits(zero) + as_bits(other_zero);
     hash = hash * 31u + as_bits(lost_in_product(a, b));
     hash = hash * 31u + as_bits(lost_in_product(swaps ? b : a, swaps ? a : b));
-    real factors[4]; // as lanes of a vector
+    Real4 factor = REAL4(a, b, -a, -b);
+    Real4 other = REAL4(b, a, b, a);
+    Real4 split = REAL4(real(4097.0f), real(4097.0f), real(4097.0f), real(4097.0f));
+    PRECISE Real4 products = factor * other;
+    PRECISE Real4 large = factor * split;
+    PRECISE Real4 high = large - (large - factor);
+    PRECISE Real4 low = factor - high;
+    PRECISE Real4 other_large = other * split;
+    PRECISE Real4 other_high = other_large - (other_large - other);
+    PRECISE Real4 other_low = other - other_high;
+    PRECISE Real4 lost_of_each =
+        ((high * other_high - products) + high * other_low + low * other_high) + low * other_low;
+    HASH_LANES(hash, lost_of_each)
+    real factors[4]; // of which a compiler may make a vector
     for (uint i = 0u; i < 4u; i++)
         factors[i] = i < 2u ? a : -a;
     for (uint i = 0u; i < 4u; i++)

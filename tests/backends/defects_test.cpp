@@ -2,6 +2,7 @@
 // says, right or wrong. tests/expected/README.md describes each.
 #include "bench/expectations/expectation_files.h"
 #include "bench/expectations/judgement.h"
+#include "core/base/control_groups.h"
 #include "core/base/error.h"
 #include "core/device/backend.h"
 #include "core/device/defects.h"
@@ -32,7 +33,10 @@ constexpr DefectLaunch one_group{items, items};
 std::optional<DefectFinding> finding_on(Backend& backend, std::size_t device, const Defect& defect, std::string& reason)
 try {
     const bool is_right = std::ranges::all_of(defect.launches(), [&](const DefectLaunch& launch) {
-        return wrong_items(defect, launch, backend.run_defect(device, defect.name, launch)).empty();
+        return wrong_items(
+                   defect, launch,
+                   backend.run_defect(device, defect.name, launch_on(backend.devices()[device], defect, launch)))
+            .empty();
     });
     return is_right ? DefectFinding::right : DefectFinding::wrong;
 } catch (const Error& error) {
@@ -127,7 +131,7 @@ TEST(Stressors, of_a_large_buffer_are_refused_where_the_device_or_its_memory_adm
         device.max_buffer_bytes = max_buffer_mib << 20;
         device.memory_bytes = memory_mib << 20;
         try {
-            require_large_buffer(*find_defect(name), device);
+            (void)launch_on(device, *find_defect(name), {});
         } catch (const Error& error) {
             EXPECT_EQ(error.kind(), ErrorKind::unsupported);
             return std::string(error.what());
@@ -139,6 +143,45 @@ TEST(Stressors, of_a_large_buffer_are_refused_where_the_device_or_its_memory_adm
     EXPECT_EQ(refusal("words_past_4_gib", 4099, 16384), "it admits buffers of 4099 MiB, and the kernel needs 4100 MiB");
     EXPECT_EQ(refusal("words_past_4_gib", 4100, 16384), "");
     EXPECT_EQ(refusal("words_past_4_gib", 0, 8000), "half of its memory is 4000 MiB, and the kernel needs 4100 MiB");
+    EXPECT_EQ(refusal("words_at_the_end", 11, 16384), "it admits buffers of 11 MiB, and the kernel needs 12 MiB");
+    EXPECT_EQ(refusal("words_at_the_end", 12, 24), "");
+}
+
+TEST(Stressors, of_the_largest_buffer_have_one_that_the_device_and_its_memory_admit)
+{
+    const auto bytes_on = [](std::uint64_t max_buffer_bytes, std::uint64_t memory_bytes) {
+        Device device;
+        device.kind = DeviceKind::gpu;
+        device.max_buffer_bytes = max_buffer_bytes;
+        device.memory_bytes = memory_bytes;
+        return launch_on(device, *find_defect("words_at_the_end"), {}).large_bytes();
+    };
+    constexpr std::uint64_t gib = std::uint64_t{1} << 30;
+    EXPECT_EQ(bytes_on(gib, 24 * gib), gib);
+    EXPECT_EQ(bytes_on(4 * gib - 1, 24 * gib), 4 * gib - 4096) << "what Vulkan calls no limit";
+    EXPECT_EQ(bytes_on(4 * gib - 1, 3 * gib), 3 * gib / 2);
+    EXPECT_EQ(bytes_on(0, 140 * gib), 16 * gib - 4096) << "more words have no number";
+    Device processor;
+    processor.kind = DeviceKind::cpu;
+    processor.memory_bytes = 1024 * gib;
+    EXPECT_LE(launch_on(processor, *find_defect("words_at_the_end"), {}).large_bytes(), available_memory_bytes());
+}
+
+TEST(Stressors, are_chosen_with_a_launch_and_the_size_of_the_largest_buffer)
+{
+    const auto words_of = [](const char* text) -> std::int64_t {
+        const auto chosen = chosen_defect(text);
+        return chosen ? std::int64_t{chosen->launch.large_words} : -1;
+    };
+    EXPECT_EQ(words_of("zoo_of_exits:64:16"), 0);
+    EXPECT_EQ(words_of("words_past_64_mib:64:16"), 0x1000000 + 0x100000);
+    EXPECT_EQ(words_of("words_at_the_end"), 1 << 25) << "what Vulkan guarantees";
+    EXPECT_EQ(words_of("words_at_the_end:64:16"), 1 << 25);
+    EXPECT_EQ(words_of("words_at_the_end:64:16:1073740800"), 1073740800);
+    for (const char* wrong :
+         {"words_at_the_end:64:16:", "words_at_the_end:64:16:1000", "words_at_the_end:64:16:4294967296",
+          "words_at_the_end:64:16:33554432:1", "zoo_of_exits:64:16:33554432", "words_past_64_mib:64:16:33554432"})
+        EXPECT_EQ(words_of(wrong), -1) << wrong;
 }
 
 TEST(Stressors, are_wrong_if_a_compiler_makes_a_fault)

@@ -27,9 +27,9 @@ namespace {
 #undef FAR_FN
 #undef FAR
 #define FAR_FN(name)                                                                                                   \
-    KERNEL_FN void name(uint* results, std::unordered_map<uint, uint>& large, uint item_count, uint group,             \
-                        uint group_size)
-#define FAR(index) large[std::min(index, 0x40000000u + FAR_ROOM - 1u)]
+    KERNEL_FN void name([[maybe_unused]] const uint* words, uint* results, std::unordered_map<uint, uint>& large,      \
+                        uint item_count, uint group, uint group_size)
+#define FAR(index) large[std::min(index, words[FAR_END_WORD] - 1u)]
 
 // What a device that flushes denormals returns.
 KERNEL_FN uint flushed_bits(real value)
@@ -46,21 +46,23 @@ namespace tetrace::faults {
 
 std::vector<std::uint32_t> FAULT(const DefectLaunch& launch)
 {
-    const auto words = defect_words(launch);
 #ifdef GROUP_DEFECT
 #define TEXT_OF(name) #name
 #define NAME_OF(name) TEXT_OF(name)
-    std::vector<std::uint32_t> results(output_words(NAME_OF(GROUP_DEFECT), launch));
+    const Defect& defect = *find_defect(NAME_OF(GROUP_DEFECT));
+    const auto words = defect_words({launch.items, launch.group_items, defect.large_words});
+    std::vector<std::uint32_t> results(output_words(defect.name, launch));
 #ifdef LARGE
     std::unordered_map<uint, uint> large;
     for (std::uint32_t group = 0; group < launch.groups(); ++group)
-        GROUP_DEFECT(results.data(), large, launch.items, group, launch.group_items);
+        GROUP_DEFECT(words.data(), results.data(), large, launch.items, group, launch.group_items);
 #else
     std::array<std::uint32_t, LOCAL_WORDS> memory;
     for (std::uint32_t group = 0; group < launch.groups(); ++group)
         GROUP_DEFECT(words.data(), results.data(), memory.data(), launch.items, group, launch.group_items);
 #endif
 #else
+    const auto words = defect_words(launch);
     std::vector<std::uint32_t> results;
     for (std::uint32_t item = 0; item < launch.items; ++item)
         results.push_back(DEFECT(words.data(), item));

@@ -16,6 +16,8 @@ Device some_device()
     Device device;
     device.name = "a device";
     device.driver = "driver 1.2";
+    device.kind = DeviceKind::gpu;
+    device.memory_bytes = std::uint64_t{64} << 30;
     return device;
 }
 
@@ -148,6 +150,20 @@ TEST(DefectRuns, name_a_wrong_word_that_all_groups_share)
     EXPECT_TRUE(contains(text, "tallies_in_buffer on bad: word 7 is 1 instead of 0 (dump --defect "
                                "tallies_in_buffer:1:1)"))
         << text;
+}
+
+TEST(DefectRuns, of_the_largest_buffer_have_its_size_in_the_command_of_their_case)
+{
+    Device device = some_device();
+    device.max_buffer_bytes = (std::uint64_t{1} << 32) - 1;
+    Driver driver("bad", device);
+    driver.wrong = "words_at_the_end";
+    Options options;
+    options.stress = true;
+    const Report report = defect_report(run_defects(options, {&driver}), {}, options);
+    EXPECT_TRUE(contains(report.sheet.text(), "(dump --defect words_at_the_end:64:64:1073740800)"))
+        << report.sheet.text();
+    EXPECT_TRUE(contains(report.json.dump(), "\"large_words\":1073740800")) << report.json;
 }
 
 TEST(DefectRuns, without_a_required_backend_do_not_conform)

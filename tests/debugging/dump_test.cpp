@@ -111,6 +111,26 @@ TEST_F(Dump, of_cuda_host_and_of_a_variant_is_one_text_that_its_command_compiles
     EXPECT_EQ(run("dump --backend cuda --variant no/such --out other").code, 2);
 }
 
+TEST_F(Dump, of_a_variant_has_the_command_of_the_entry_point)
+{
+    const std::string variant = "--method maria --layout tet80 --variant other_face/struct ";
+    EXPECT_EQ(run("dump --backend vulkan --method maria --layout tet80 --entry tally --out out").code, 2)
+        << "no variant";
+    EXPECT_EQ(run("dump --backend vulkan --scene cubes --pixel 1,1 --entry tally --out out " + variant).code, 2);
+    EXPECT_EQ(run("dump --backend vulkan --layout bvh2 --variant difference_of.3/guard --entry tally --out out").code,
+              2)
+        << "a BVH has no such task";
+    const auto expect_option = [&](const std::string& backend, const std::string& file, const std::string& entry,
+                                   const std::string& option) {
+        if (!dumps(backend, variant + entry)) return;
+        EXPECT_TRUE(contains(command_for(file), option)) << command_for(file);
+    };
+    expect_option("vulkan", "maria_tet80.comp", "--entry tally", " -DTALLY ");
+    expect_option("vulkan", "maria_tet80.comp", "", " -DTRACE ");
+    expect_option("opencl", "maria_tet80.cl", "--entry absorb", " -DABSORB ");
+    expect_option("opencl", "maria_tet80.cl", "--entry rays", " -DRAYS ");
+}
+
 TEST_F(Dump, of_what_has_no_files_is_refused)
 {
     for (const std::string arguments : {"--backend openmp", "--backend embree", "--backend opencl --layout embree"}) {

@@ -161,6 +161,18 @@ TEST_F(Library, finds_the_nearest_triangle_in_its_range_through_every_layout)
     }
 }
 
+TEST_F(Library, finds_the_nearest_triangle_through_a_drivers_own_bvh)
+{
+    const ScenePointer scene = loaded(file_.string());
+    tetrace_tracer* made = nullptr;
+    EXPECT_EQ(tetrace_open(scene.get(), "openmp", 0, "rt", &made), TETRACE_UNSUPPORTED) << tetrace_last_error();
+    if (tetrace_open(scene.get(), "vulkan", 0, "rt", &made) != TETRACE_OK) GTEST_SKIP() << tetrace_last_error();
+    const TracerPointer tracer(made);
+    const std::vector<tetrace_ray> rays = some_rays();
+    expect_right(rays, traced(tracer, rays));
+    expect_right(rays, traced(tracer, rays, TETRACE_ANY_HIT), true);
+}
+
 TEST_F(Library, test_finds_answers_that_are_wrong)
 {
     const std::vector<tetrace_ray> rays = some_rays();

@@ -66,6 +66,10 @@ constexpr const char* crashing_at = "--variants 3 --seed 5 ";
 /// Its programs end the process at the same.
 constexpr const char* trapping_compiler =
     "sed -i 's/    variant_of_other_face_all variant_all;/__builtin_trap(); &/' \"$text\"\nexec \"$real\" \"$@\"";
+/// Its programs miscount the tets that a ray crosses if a function has its arguments in a struct: hits are right.
+constexpr const char* miscounting_compiler = "if grep -q variant_of_other_face_all \"$text\"; then sed -i "
+                                             "'s/all\\.crossings/(all.crossings + 1u)/' \"$text\"; fi\n"
+                                             "exec \"$real\" \"$@\"";
 /// Its code is one instruction, which fuses if a function has its arguments in a struct; then it spills, too.
 constexpr const char* fusing_nvcc = R"(case $1 in
 --version) echo 'Cuda compilation tools, release 0.0, V0.0.0' && exit ;;
@@ -166,6 +170,41 @@ TEST_F(CheckVariants, of_cuda_host_whose_programs_end_the_process_are_failures_a
             "/usr/bin/env");
     EXPECT_EQ(missing.code, 3) << missing.out;
     EXPECT_TRUE(contains(missing.out, "install g++")) << missing.out;
+}
+
+TEST_F(CheckVariants, of_another_task_are_written_as_a_case_of_it)
+{
+    const Ended ended = check_with(
+        miscounting_compiler,
+        std::string("check --backend vulkan --out checked.json --task tally --rays diffuse ") + crashing_at + kernel);
+    if (ended.code == 3) GTEST_SKIP() << ended.errors;
+    ASSERT_EQ(ended.code, 1) << ended.out << ended.errors;
+    const auto failure = variants().at("rows").at(0).at("failures").at(0);
+    EXPECT_EQ(failure.at("outcome"), "wrong");
+    EXPECT_EQ(failure.at("reduced"), nlohmann::json({"other_face/struct"}));
+    const std::string command = failure.at("command");
+    EXPECT_TRUE(contains(command, " --task tally --rays diffuse ")) << command;
+    if (std::system("command -v cc > /dev/null") != 0) GTEST_SKIP() << "no C compiler";
+    const std::string dump = command.substr(std::string("tetrace ").size());
+    ASSERT_EQ(check_with(miscounting_compiler, dump).code, 0) << dump;
+    const Ended wrong = run_case();
+    EXPECT_EQ(wrong.code, 1) << wrong.out << wrong.errors;
+    ASSERT_EQ(run(dump).code, 0);
+    const Ended right = run_case();
+    EXPECT_EQ(right.code, 0) << right.out << right.errors;
+}
+
+TEST_F(CheckVariants, of_another_task_on_cuda_host_name_its_entry_point)
+{
+    const Ended ended = check_with(
+        miscounting_compiler,
+        std::string("check --backend cuda-host --out checked.json --task segments ") + crashing_at + kernel, "c++");
+    if (ended.code == 3) GTEST_SKIP() << ended.errors;
+    ASSERT_EQ(ended.code, 1) << ended.out << ended.errors;
+    const std::string command = variants().at("rows").at(0).at("failures").at(0).at("command");
+    EXPECT_TRUE(contains(command, " --entry segments ")) << command;
+    ASSERT_EQ(run(command.substr(std::string("tetrace ").size())).code, 0) << command;
+    EXPECT_TRUE(contains(file("case/README.txt"), "is for all tets of given rays")) << file("case/README.txt");
 }
 
 TEST_F(CheckVariants, that_inspect_compiles_are_reduced_to_the_change_that_makes_the_compiler_fuse)

@@ -91,7 +91,7 @@ TETRACE_API tetrace_status tetrace_scene_get_info(const tetrace_scene* scene, te
 TETRACE_API void tetrace_scene_free(tetrace_scene* scene);
 
 // Packs a scene and copies it to a device. layout: "half32" or "tet64", "tet80", "tet96" (tets), "bvh2", "bvh4" or
-// "cwbvh" (BVHs). Null is "half32".
+// "cwbvh" (BVHs), or "rt", the BVH of a Vulkan driver with ray queries. Null is "half32".
 TETRACE_API tetrace_status tetrace_open(const tetrace_scene* scene, const char* backend, uint32_t device,
                                         const char* layout, tetrace_tracer** tracer);
 
