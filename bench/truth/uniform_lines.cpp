@@ -9,7 +9,7 @@ namespace tetrace {
 namespace {
 
 constexpr double groups_of_domain = 512;
-constexpr double max_off = 8;
+constexpr double max_off = 6;
 constexpr double false_alarm = 1e-9; // of all cells together, by the bound
 constexpr std::uint64_t min_lines = 256, min_meetings = 256;
 

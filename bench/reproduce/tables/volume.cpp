@@ -233,7 +233,7 @@ PaperTable volume_lines_table(const std::vector<SceneLines>& lines)
                       {"verdict", "verdict"}},
                      {"Of the tets, each by itself, and of groups of tets that follow each other in memory. 'off' is "
                       "the sum of the squares of what the mean lengths are off, less its expectation, in standard "
-                      "deviations: near 0 for right lengths, failed from 8. 'worst' is the mean that is off most, over "
+                      "deviations: near 0 for right lengths, failed from 6. 'worst' is the mean that is off most, over "
                       "its bound: failed from 1. 'testable' tets have that bound below their expected length. "
                       "docs/spec/volume.md, S10, has the statistics. Lengths are in units of the domain."}};
     Claim claim{"uniform-lines", "uniform lines have a mean length of 4 V / S in each tet of volume V"};
