@@ -25,7 +25,6 @@
 // REFILLS_LANES                                   refill_cuda.h                backends/cuda/kernel.cu
 // ENOUGH_LANES                                    refill_cuda.h, tests         refill_cuda.h
 // TAKES_RAYS, STARTS_IN_TETS                      methods, entry.h, bvh        entry files: which tasks there are
-// TAKES_LINES                                     four methods                 structure_cdt.h: task segments alone
 // FINDS_NO_EXIT                                   methods that may find none   segments.h
 // SEARCHES_EXITS                                  search.h                     entry files
 // CROSSES_TETS                                    segments.h                   entry files: segments, tally, absorb

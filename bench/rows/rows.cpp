@@ -259,7 +259,7 @@ void require_named_devices(const Options& options, const std::vector<Backend*>& 
 }
 
 constexpr const char* crossing_rule = "; rows of --task segments, tally and absorb are of maria and project on tets "
-                                      "that name their corners, of segments also of plane and plucker, and on openmp "
+                                      "that name their corners, of segments also of the older methods, and on openmp "
                                       "of plucker64 and barycentric, on tet80, with schedule tiles (project on half32 "
                                       "also packets), math mode exact, and rays of kinds primary, diffuse and random";
 

@@ -2,30 +2,79 @@
 
 #include "bench/truth/crossings.h"
 
+#include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace tetrace {
+
+/// What uniform lines show of their lengths in each cell of the domain, a tet or a group of tets (docs/spec/volume.md,
+/// S10).
+struct CellTest {
+    std::size_t cells = 0;
+    std::size_t testable = 0; ///< cells whose own mean is tested: its bound is below the expected length
+    double off = 0;   ///< squares of what the cells' means are off, less their expectation, in standard deviations
+    double worst = 0; ///< the largest of what a cell's mean is off, over its bound
+
+    [[nodiscard]] bool passes() const;
+};
 
 /// What uniform lines show of their lengths in tets, by a law that knows no code: a line that meets a convex body of
 /// surface S has 4 V / S of any volume V inside it, on average (Crofton).
 struct LineTest {
     std::uint64_t lines = 0;
-    std::size_t groups = 0;
+    std::uint64_t meetings = 0; ///< of the pairs of lines compared, those that have a tet in common
     double mean_length = 0;     ///< of a line in the domain; domain units
     double expected_length = 0; ///< 4 V / S of the domain
-    double chi_square = 0;      ///< per group: squares of what the mean length in a group is off, over its variance
+    CellTest tets;              ///< each by itself
+    CellTest groups;            ///< tets that follow each other in packed order, with a 512th of the domain or more
 
-    /// Whether there are lines enough for the law to be tested.
+    /// Whether there are lines enough for the variance of `off` to be known.
     [[nodiscard]] bool is_testable() const;
-    /// How far chi_square may be from 1: six standard deviations.
-    [[nodiscard]] double reach() const;
     [[nodiscard]] bool passes() const;
 };
 
-/// Sums the lengths of uniform lines in groups of tets that follow each other in packed order. A group has at least a
-/// 512th of the domain, so that hundreds of lines cross it, and its mean is nearly normal.
+/// The lengths of uniform lines in cells, and which lines meet where.
+class CellLengths {
+public:
+    /// cell_of: of each tet, in packed order, from 0 without a gap.
+    CellLengths(const Scene& scene, std::span<const std::uint32_t> mesh_of_packed, std::vector<std::uint32_t> cell_of);
+
+    void add(const CrossedTets& walk);
+    [[nodiscard]] CellTest test() const;
+    [[nodiscard]] std::uint64_t lines() const { return lines_; }
+    /// Pairs of lines with a cell in common, of those that were compared.
+    [[nodiscard]] std::uint64_t meetings() const { return meetings_; }
+    /// Of all lines.
+    [[nodiscard]] double length() const;
+
+private:
+    struct Cell {
+        double expected = 0; ///< mean length of a line
+        double longest = 0;  ///< no length is greater
+        double sum = 0, squares = 0;
+        /// One over the largest variance that a line's length can have.
+        [[nodiscard]] double weight() const { return expected > 0 ? 1 / (longest * expected) : 0; }
+    };
+    struct Line {
+        std::vector<std::pair<std::uint32_t, double>> lengths; ///< by cell
+        double expected = 0;                                   ///< weighted product with the cells' expected lengths
+    };
+    [[nodiscard]] Line line_of(const CrossedTets& walk);
+
+    static constexpr std::size_t compared = 16; ///< lines with which each is compared: those before it
+    std::vector<std::uint32_t> cell_of_;
+    std::vector<Cell> cells_;
+    std::vector<double> of_line_; ///< of each cell; 0 between two lines
+    std::array<Line, compared> recent_;
+    double expected_square_ = 0; ///< weighted square of the cells' expected lengths
+    double pair_squares_ = 0;
+    std::uint64_t lines_ = 0, pairs_ = 0, meetings_ = 0;
+};
+
+/// Tests the lengths of uniform lines by tets and by groups of tets. All lines must be independent.
 class UniformLines {
 public:
     UniformLines(const Scene& scene, std::span<const std::uint32_t> mesh_of_packed);
@@ -35,13 +84,8 @@ public:
     [[nodiscard]] LineTest test() const;
 
 private:
-    double volume_ = 0, surface_ = 0;     ///< of the domain
-    std::vector<std::uint32_t> group_of_; ///< of each tet, in packed order
-    std::vector<double> volumes_;         ///< of each group
-    std::vector<double> sums_, squares_;  ///< of each group, over all lines
-    std::vector<double> of_line_;         ///< of each group; 0 between two lines
-    std::vector<std::uint32_t> crossed_;  ///< groups of one line
-    std::uint64_t lines_ = 0;
+    double expected_length_;
+    CellLengths tets_, groups_;
 };
 
 } // namespace tetrace

@@ -67,8 +67,8 @@ std::vector<VolumeScene> volume_scenes(const Options& options, std::vector<std::
 Options volume_options(Options options)
 {
     if (options.methods.empty())
-        options.methods = {Method::plane,       Method::plucker, Method::plucker64,
-                           Method::barycentric, Method::maria,   Method::project};
+        options.methods = {Method::plane,     Method::plucker,     Method::stp,   Method::ms06,
+                           Method::plucker64, Method::barycentric, Method::maria, Method::project};
     if (options.layouts.empty()) options.layouts = {Layout::tet80, Layout::half32, Layout::tet64};
     if (options.schedules.empty()) options.schedules = {Schedule::tiles, Schedule::packets};
     const unsigned threads = resolved_threads(options);
@@ -106,7 +106,8 @@ public:
             lines_.emplace(image.row.scene->loaded().scene, mesh_of_packed_);
         }
         const auto walk_of = walks_of(image.row, image.view);
-        for (std::size_t ray = 0; ray < image.hits.size(); ++ray)
+        const std::size_t lines = image.row.scene->rays_per_view(); // without the repeats that fill the last group
+        for (std::size_t ray = 0; ray < std::min(lines, image.hits.size()); ++ray)
             lines_->add(walk_of(ray));
     }
     [[nodiscard]] std::optional<LineTest> test() const { return lines_ ? std::optional(lines_->test()) : std::nullopt; }

@@ -12,7 +12,6 @@
 #undef NEIGHBOUR
 #undef AS_SEEN
 #undef TAKES_RAYS
-#undef TAKES_LINES
 #undef FINDS_NO_EXIT
 #undef WALKS_PATHS
 #undef STARTS_IN_TETS

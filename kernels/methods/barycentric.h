@@ -9,7 +9,6 @@
 #ifndef TETRACE_KERNELS_METHODS_BARYCENTRIC_H
 #define TETRACE_KERNELS_METHODS_BARYCENTRIC_H
 
-#define TAKES_LINES
 #define FINDS_NO_EXIT
 
 #include "kernels/layouts/faces.h"

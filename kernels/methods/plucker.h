@@ -8,8 +8,6 @@
 
 #include "kernels/methods/edge_sides.h"
 
-#define TAKES_LINES
-
 #define AS_SEEN(ray, point) (point)
 
 KERNEL_FN real side_of(Ray ray, Vec3 from, Vec3 to)

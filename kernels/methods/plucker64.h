@@ -7,7 +7,6 @@
 #ifndef TETRACE_KERNELS_METHODS_PLUCKER64_H
 #define TETRACE_KERNELS_METHODS_PLUCKER64_H
 
-#define TAKES_LINES
 #define FINDS_NO_EXIT
 
 #include "kernels/layouts/faces.h"

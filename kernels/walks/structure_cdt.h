@@ -19,6 +19,6 @@
 #ifndef HAS_RECORDS
 #include "kernels/walks/search.h"
 #endif
-#if (defined(TAKES_RAYS) || defined(TAKES_LINES)) && !defined(KERNEL_REAL_HAS_NO_BITS)
+#ifndef KERNEL_REAL_HAS_NO_BITS
 #include "kernels/walks/segments.h"
 #endif

@@ -214,23 +214,22 @@ void expect_known_figures(const std::string& target, const json& programs, bool 
 
 // RADV takes 15 s of a core for the main entries of a target, and as long for all its other entries, nearly all of it
 // for `project`; nvcc takes 20 s for all entries of a target.
-INSTANTIATE_TEST_SUITE_P(each, InspectedTarget,
-                         testing::Values(Asked{"gfx1100",
-                                               {"--method all --entry outside",
-                                                "--method all --layout tet80,half32,bvh2,bvh4,cwbvh --entry "
-                                                "inside,rays",
-                                                "--method maria,project --layout tet80,half32,tet64 --entry "
-                                                "segments,tally,absorb"}},
-                                         Asked{"navi21", {"--method all --entry outside"}},
-                                         Asked{"gfx906", {"--method all --entry outside"}},
-                                         Asked{"sm_75", {"--method all --entry outside,inside,rays"}},
-                                         Asked{"sm_90",
-                                               {"--method project,single --layout half32,tet64,bvh2,bvh4,cwbvh --entry "
-                                                "outside,inside,rays"}},
-                                         Asked{"hip:gfx90a",
-                                               {"--method project,single --layout half32,tet64,bvh2,bvh4,cwbvh"}},
-                                         Asked{"hip:gfx1100", {"--layout half32 --entry outside,rays"}}),
-                         [](const auto& instance) { return test_name_of(instance.param.target); });
+INSTANTIATE_TEST_SUITE_P(
+    each, InspectedTarget,
+    testing::Values(Asked{"gfx1100",
+                          {"--method all --entry outside",
+                           "--method all --layout tet80,half32,bvh2,bvh4,cwbvh --entry "
+                           "inside,rays",
+                           "--method all --entry segments,tally,absorb"}},
+                    Asked{"navi21", {"--method all --entry outside"}},
+                    Asked{"gfx906", {"--method all --entry outside"}},
+                    Asked{"sm_75", {"--method all --entry outside,inside,rays,segments,tally,absorb"}},
+                    Asked{"sm_90",
+                          {"--method project,single --layout half32,tet64,bvh2,bvh4,cwbvh --entry "
+                           "outside,inside,rays,segments,tally,absorb"}},
+                    Asked{"hip:gfx90a", {"--method project,single --layout half32,tet64,bvh2,bvh4,cwbvh"}},
+                    Asked{"hip:gfx1100", {"--layout half32 --entry outside,rays"}}),
+    [](const auto& instance) { return test_name_of(instance.param.target); });
 
 // What a change of a kernel most often costs, in seconds: `each` is run by `make test-all`.
 INSTANTIATE_TEST_SUITE_P(of_default_rows, InspectedTarget,

@@ -133,7 +133,8 @@ TEST(Segments, of_chords_are_neither_lost_nor_wrong_by_maria)
 // Their walks are judged, not trusted: a ray that is lost or wrong is a number, and ends.
 TEST(Segments, of_other_programs_rules_get_chords_right_and_some_hard_rays_wrong)
 {
-    for (const Method method : {Method::plane, Method::plucker, Method::plucker64, Method::barycentric}) {
+    for (const Method method :
+         {Method::plane, Method::plucker, Method::stp, Method::ms06, Method::plucker64, Method::barycentric}) {
         Verdicts chords, hard;
         for (const auto& [name, scene] : make_hard_scenes()) {
             const CrossedScene tets(scene, method, Layout::tet80);
