@@ -405,6 +405,9 @@ std::vector<TetsAttempt> fallback_attempts(const BuildOptions& options)
     constexpr std::uint32_t first_orders = 8, orders_of_welds = 10, all_orders = 32;
     const std::string careful = options.switches + "0/2/2", quality = default_build(TetsKind::cdt).switches;
     std::vector<TetsAttempt> all;
+    if (options.switches != quality)
+        for (const char* const unoptimised : {"O0", "T1e-13O0"})
+            all.push_back({options.switches + unoptimised});
     for (std::uint32_t order = 0; order < first_orders; ++order)
         all.push_back({careful, order});
     if (options.switches != quality) all.push_back({quality});

@@ -64,7 +64,7 @@ struct BuilderTalk {
 struct PreparedScene {
     Scene scene;
     TriangleMesh surface;       ///< the domain's
-    std::vector<Float3> points; ///< more vertices for TetGen; if switches lack q and tets are for rays
+    std::vector<Float3> points; ///< more vertices for TetGen; if switches lack q and O0 and tets are for rays
     OptimiserLimits limits;
     Stopwatch watch;  ///< since its mesh was read
     OwnTets own = {}; ///< of a file of tets; they stay as they are, unless limits.closed_too

@@ -77,6 +77,21 @@ TEST_F(BuilderProgram, optimises_tets_for_rays_and_says_so)
     EXPECT_EQ(run_on(mesh, "--effort 4").code, BUILDER_USAGE);
 }
 
+// Such switches are tried where TetGen failed, and it optimises its tets after all if it has points to insert.
+TEST_F(BuilderProgram, gives_tetgen_no_more_points_where_its_optimiser_is_off)
+{
+    const auto mesh = write("ball.off", to_off(sphere(3)));
+    const auto vertices_with = [&](const std::string& more) {
+        const auto ended = run_on(mesh, "--tets rays --optimise-for 1e-9 --switches " + more);
+        EXPECT_EQ(ended.code, BUILDER_GOOD) << ended.errors;
+        const Scene scene = read_scene(folder_ / "out.tet");
+        expect_sound(scene);
+        return scene.tets.vertices.size();
+    };
+    EXPECT_EQ(vertices_with("pYO0 --effort 2"), vertices_with("pYO0 --effort 0"));
+    EXPECT_GT(vertices_with("pY --effort 2"), vertices_with("pY --effort 0"));
+}
+
 TEST_F(BuilderProgram, finishes_with_what_the_optimiser_has_reached_when_it_is_interrupted)
 {
     const auto log = folder_ / "log";

@@ -262,7 +262,7 @@ TEST_F(Load, tries_other_switches_where_tetgen_fails_on_tets_for_rays)
     ASSERT_FALSE(loaded.messages.empty());
     EXPECT_TRUE(contains(loaded.messages.front(), "TetGen failed with switches pY (the builder crashed"));
     EXPECT_TRUE(contains(loaded.messages.front(), "; trying others"));
-    EXPECT_TRUE(contains(loaded.messages.at(1), "with switches pY0/2/2 in order 1, at attempt 3"));
+    EXPECT_TRUE(contains(loaded.messages.at(1), "with switches pY0/2/2 in order 1, at attempt 5"));
     const LoadedScene again = load();
     EXPECT_TRUE(again.from_cache);
     EXPECT_TRUE(contains(again.messages.front(), "made with pY0/2/2, since TetGen's switches pY failed"));
@@ -305,6 +305,8 @@ TEST_F(Load, tries_all_other_ways_and_says_how_many_where_none_helps)
     BuildOptions rays = default_build(TetsKind::rays);
     const auto is_welded = [](const TetsAttempt& attempt) { return attempt.weld > 0; };
     EXPECT_TRUE(std::ranges::any_of(fallback_attempts(rays), is_welded));
+    EXPECT_EQ(fallback_attempts(rays).at(0), (TetsAttempt{"pYO0"})) << "TetGen's own optimiser may take all the time";
+    EXPECT_EQ(fallback_attempts(rays).at(1), (TetsAttempt{"pYT1e-13O0"}));
     rays.repair = false;
     EXPECT_TRUE(std::ranges::none_of(fallback_attempts(rays), is_welded)) << "only a repair may move vertices";
     rays.switches = "pq2";
