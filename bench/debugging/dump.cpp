@@ -102,6 +102,9 @@ KernelId kernel_of_entry(const Options& options, KernelId kernel)
 {
     require_one(options, "--entry", options.entries);
     if (options.entries.empty()) return kernel;
+    if (options.entries.front() == Entry::inside)
+        throw Error(ErrorKind::usage, "dump: --entry: a variant's command has primary rays from outside, not inside; "
+                                      "'outside' is accepted");
     kernel.task = value_named<Task>(name_of(options.entries.front())).value_or(Task::trace); // outside and inside
     if (!has_task(kernel))
         throw Error(ErrorKind::usage,

@@ -356,7 +356,8 @@ std::vector<OptionRow> judging_options()
         {"Measuring", "--launches-in-flight", "N",
          "Launches of a sample that may be on the device together, 1 to 8, each with an output of its own: a launch "
          "begins when the one that is N before it has ended. All N outputs are verified before and after the samples. "
-         "Rates are then throughput without the gaps between launches; latency is still that of single launches. For "
+         "Rates are then throughput, with less of the gaps between launches; latency is still that of single launches. "
+         "For "
          "opencl, vulkan, cuda and cuda-host; rows of openmp and embree, and of --task tally, have 1. Default: 1.",
          bit(Verb::bench), false, set_count("--launches-in-flight", &Options::launches_in_flight, 1, max_in_flight)},
         {"Measuring", "--sample-time", "TIME",

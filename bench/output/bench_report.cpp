@@ -164,7 +164,8 @@ const char* const time_columns =
     "pass, in which devices compile what is left; then, for all views, kernel: device seconds; launch: wall minus "
     "kernel, launching and waiting; download: hits to the host; wall: launch to end. latency: kernel of one view "
     "launched alone; fixed: cost of each launch, by the line through launches of one view and of all, if it is "
-    "above the noise; per Mray: what a million rays add, by that line. Medians of the samples, except for download.";
+    "above the noise; per Mray: what a million rays add, by that line, or with fixed where that is left out. Medians "
+    "of the samples, except for download.";
 
 /// The rows that an interrupt left without a rate.
 std::string untimed_sentence(const std::vector<RowRecord>& rows)

@@ -415,7 +415,9 @@ std::vector<RowField> time_fields()
              "noise"),
          csv("fixed", "s", 9), times("fixed", "ms", 3, milliseconds), report("fixed", "", 3, milliseconds)},
         {"times", "s_per_mray", &Figures::s_per_mray,
-         recorded("positive", optional, "of a million rays, by the same line; with fixed_s if that is left out"),
+         recorded("positive", optional,
+                  "of a million rays, by the same line; with fixed_s if that is left out; both are left out of rows "
+                  "with several launches in flight"),
          csv("per Mray", "s", 9), times("per Mray", "ms", 3, milliseconds), report("per Mray", "", 3, milliseconds)},
         {"times", "passes", above_one(&RowRecord::passes),
          recorded(R"({ "type": "integer", "minimum": 2 })", optional,

@@ -85,7 +85,7 @@ bool LineTest::is_testable() const
 
 bool LineTest::passes() const
 {
-    return is_testable() && tets.passes() && groups.passes();
+    return is_testable() && std::abs(mean_off) < max_off && tets.passes() && groups.passes();
 }
 
 CellLengths::CellLengths(const Scene& scene, std::span<const std::uint32_t> mesh_of_packed,
@@ -166,12 +166,6 @@ CellTest CellLengths::test() const
     return test;
 }
 
-double CellLengths::length() const
-{
-    return std::accumulate(cells_.begin(), cells_.end(), 0.0,
-                           [](double sum, const Cell& cell) { return sum + cell.sum; });
-}
-
 UniformLines::UniformLines(const Scene& scene, std::span<const std::uint32_t> mesh_of_packed)
     : expected_length_(4 * volume_of(scene.domain) / surface_of(scene.domain)),
       tets_(scene, mesh_of_packed, each_tet(mesh_of_packed.size())),
@@ -181,16 +175,26 @@ UniformLines::UniformLines(const Scene& scene, std::span<const std::uint32_t> me
 
 void UniformLines::add(const CrossedTets& walk)
 {
+    const double length = walk.places.empty() ? 0 : length_of(std::ranges::max(walk.places) - walk.places.front());
+    sum_ += length;
+    squares_ += length * length;
     tets_.add(walk);
     groups_.add(walk);
 }
 
 LineTest UniformLines::test() const
 {
-    const std::uint64_t lines = tets_.lines();
-    return {
-        lines,        tets_.meetings(), lines == 0 ? 0 : tets_.length() / static_cast<double>(lines), expected_length_,
-        tets_.test(), groups_.test()};
+    LineTest test{.lines = tets_.lines(),
+                  .meetings = tets_.meetings(),
+                  .expected_length = expected_length_,
+                  .tets = tets_.test(),
+                  .groups = groups_.test()};
+    if (test.lines < 2) return test;
+    const auto lines = static_cast<double>(test.lines);
+    test.mean_length = sum_ / lines;
+    const double variance = std::max(squares_ - lines * test.mean_length * test.mean_length, 0.0) / (lines - 1);
+    if (variance > 0) test.mean_off = (test.mean_length - expected_length_) / std::sqrt(variance / lines);
+    return test;
 }
 
 } // namespace tetrace

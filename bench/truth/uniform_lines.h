@@ -28,11 +28,13 @@ struct LineTest {
     std::uint64_t meetings = 0; ///< of the pairs of lines compared, those that have a tet in common
     double mean_length = 0;     ///< of a line in the domain; domain units
     double expected_length = 0; ///< 4 V / S of the domain
+    double mean_off = 0;        ///< what the mean is off, in standard errors
     CellTest tets;              ///< each by itself
     CellTest groups;            ///< tets that follow each other in packed order, with a 512th of the domain or more
 
     /// Whether there are lines enough for the variance of `off` to be known.
     [[nodiscard]] bool is_testable() const;
+    /// The domain, tets and groups.
     [[nodiscard]] bool passes() const;
 };
 
@@ -47,8 +49,6 @@ public:
     [[nodiscard]] std::uint64_t lines() const { return lines_; }
     /// Pairs of lines with a cell in common, of those that were compared.
     [[nodiscard]] std::uint64_t meetings() const { return meetings_; }
-    /// Of all lines.
-    [[nodiscard]] double length() const;
 
 private:
     struct Cell {
@@ -85,6 +85,7 @@ public:
 
 private:
     double expected_length_;
+    double sum_ = 0, squares_ = 0; ///< of the lines' lengths
     CellLengths tets_, groups_;
 };
 

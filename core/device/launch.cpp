@@ -98,6 +98,8 @@ void Launches::start(std::span<const LaunchParams> images, std::uint32_t passes,
 {
     seconds_ = 0;
     jobs_ = images.size();
+    first_pass_ = 0; // a launch that failed has left its own
+    in_flight_ = 1;
     std::uint64_t tiles = 0;
     for (const LaunchParams& image : images)
         tiles += tile_count(image);

@@ -110,7 +110,7 @@ void Session::launch(std::span<const TraceJob> jobs)
 {
     const auto passes = [](const TraceJob& job) { return std::pair(job.passes, job.in_flight); };
     if (jobs.empty() || std::ranges::adjacent_find(jobs, std::ranges::not_equal_to(), passes) != jobs.end())
-        throw Error(ErrorKind::internal, "a launch of no job, or of jobs with different passes");
+        throw Error(ErrorKind::internal, "a launch of no job, or of jobs with different passes or passes in flight");
     const std::uint32_t in_flight = jobs.front().in_flight;
     if (in_flight == 0 || in_flight > max_in_flight)
         throw Error(ErrorKind::internal, "a launch with " + std::to_string(in_flight) + " passes in flight");

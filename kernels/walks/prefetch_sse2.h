@@ -4,7 +4,8 @@
 
 KERNEL_FN void prefetch_quad(SceneView scene, std::size_t index)
 {
-    _mm_prefetch(reinterpret_cast<const char*>(scene.tet_quads()) + sizeof(uint4) * index, _MM_HINT_T0);
+    const auto begin = reinterpret_cast<std::uintptr_t>(scene.tet_quads()); // an index of no record is past the array
+    _mm_prefetch(reinterpret_cast<const char*>(begin + sizeof(uint4) * index), _MM_HINT_T0);
 }
 
 KERNEL_FN void prefetch_next(SceneView scene, MAYBE_UNUSED uint record, MAYBE_UNUSED RecordExits exits)
