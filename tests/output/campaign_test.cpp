@@ -144,6 +144,8 @@ TEST_F(CampaignPage, keeps_segments_apart_from_what_is_traced)
     json other = rows[0];
     other.update({{"name", "segments/openmp"}, {"task", "segments"}, {"threads", 1}});
     rows.push_back(other);
+    other.update({{"name", "two/openmp"}, {"launches_in_flight", 2}});
+    rows.push_back(other);
     const Campaign campaign = campaign_of({result});
     const auto titled = [&](const char* part) {
         return std::ranges::count_if(campaign.groups, [&](const auto& group) { return contains(group.title, part); });
@@ -152,6 +154,9 @@ TEST_F(CampaignPage, keeps_segments_apart_from_what_is_traced)
     EXPECT_TRUE(std::ranges::any_of(campaign.machines, [](const CampaignMachine& machine) {
         return machine.name.ends_with(", 1 thread");
     })) << "a row's own number of threads";
+    EXPECT_TRUE(std::ranges::any_of(campaign.machines, [](const CampaignMachine& machine) {
+        return machine.name.ends_with(", 1 thread, 2 launches in flight");
+    })) << "whose rates are compared only with each other";
 }
 
 TEST_F(CampaignPage, says_how_much_work_has_no_counterpart)

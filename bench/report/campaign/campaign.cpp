@@ -42,12 +42,11 @@ std::string host_name(const ResultFile& file)
 std::string machine_name(const ResultFile& file, const ResultRow& row)
 {
     const std::string host = host_name(file);
-    if (*row.device_kind == DeviceKind::gpu)
-        return fmt::format("{} in {}{}", row.device, host,
-                           row.in_flight > 1 ? fmt::format(", {} launches in flight", row.in_flight) : "");
+    const std::string in_flight = row.in_flight > 1 ? fmt::format(", {} launches in flight", row.in_flight) : "";
+    if (*row.device_kind == DeviceKind::gpu) return fmt::format("{} in {}{}", row.device, host, in_flight);
     const auto all = file.section().find("threads");
     const std::uint64_t threads = row.threads > 0 ? row.threads : all ? all->count() : 0;
-    return threads == 0 ? host : fmt::format("{}, {}", host, counted(threads, "thread", "threads"));
+    return host + (threads == 0 ? "" : ", " + counted(threads, "thread", "threads")) + in_flight;
 }
 
 std::string title_of(const ResultFile& file, const ResultRow& row, const std::string& rays)
