@@ -55,14 +55,16 @@ protected:
 
 // Seeds with variants that meet these, and few changes.
 /// Drops the loop of one round round what a walk's step sets.
-constexpr const char* wrong_compiler =
-    "sed -i '/variant_round/{N;/ tet = half_face >> 2u/s/variant_round <= /variant_round + 1u <= /;}' \"$text\"\n"
-    "exec \"$real\" \"$@\"";
+constexpr const char* wrong_compiler = "sed -i '/variant_round/{N;/ tet = half_face >> 2u\\| face = exit_face(\\| "
+                                       "triangle = face_triangle(scene, tet, face/"
+                                       "s/variant_round <= /variant_round + 1u <= /;}' \"$text\"\n"
+                                       "exec \"$real\" \"$@\"";
 constexpr const char* wrong_at = "--variants 2 --seed 7 ";
 /// Ends at arguments in a struct, of one function.
 constexpr const char* crashing_compiler =
     "if grep -q variant_of_other_face_all \"$text\"; then kill -SEGV $$; fi\nexec \"$real\" \"$@\"";
 constexpr const char* crashing_at = "--variants 3 --seed 5 ";
+constexpr const char* crashing_at_in_cuda = "--variants 3 --seed 2 "; // whose text has other changes
 /// Its programs end the process at the same.
 constexpr const char* trapping_compiler =
     "sed -i 's/    variant_of_other_face_all variant_all;/__builtin_trap(); &/' \"$text\"\nexec \"$real\" \"$@\"";
@@ -149,8 +151,9 @@ TEST_F(CheckVariants, of_a_compiler_that_crashes_are_failures_and_not_the_end)
 
 TEST_F(CheckVariants, of_cuda_host_whose_programs_end_the_process_are_failures_and_their_text_is_written)
 {
-    const Ended ended = check_with(
-        trapping_compiler, std::string("check --backend cuda-host --out checked.json ") + crashing_at + kernel, "c++");
+    const Ended ended =
+        check_with(trapping_compiler,
+                   std::string("check --backend cuda-host --out checked.json ") + crashing_at_in_cuda + kernel, "c++");
     if (ended.code == 3) GTEST_SKIP() << ended.errors;
     ASSERT_EQ(ended.code, 1) << ended.out << ended.errors;
     const auto found = variants();
@@ -196,9 +199,10 @@ TEST_F(CheckVariants, of_another_task_are_written_as_a_case_of_it)
 
 TEST_F(CheckVariants, of_another_task_on_cuda_host_name_its_entry_point)
 {
-    const Ended ended = check_with(
-        miscounting_compiler,
-        std::string("check --backend cuda-host --out checked.json --task segments ") + crashing_at + kernel, "c++");
+    const Ended ended = check_with(miscounting_compiler,
+                                   std::string("check --backend cuda-host --out checked.json --task segments ") +
+                                       crashing_at_in_cuda + kernel,
+                                   "c++");
     if (ended.code == 3) GTEST_SKIP() << ended.errors;
     ASSERT_EQ(ended.code, 1) << ended.out << ended.errors;
     const std::string command = variants().at("rows").at(0).at("failures").at(0).at("command");
@@ -212,7 +216,7 @@ TEST_F(CheckVariants, that_inspect_compiles_are_reduced_to_the_change_that_makes
     const Ended ended = check_with(fusing_nvcc,
                                    std::string("inspect --target sm_90 --method maria --layout tet80 --entry outside "
                                                "--schedule tiles --out checked.json ") +
-                                       crashing_at,
+                                       crashing_at_in_cuda,
                                    "nvcc");
     ASSERT_EQ(ended.code, 1) << ended.out << ended.errors;
     const auto found = variants();
