@@ -136,7 +136,8 @@ void CudaSession::start_launch(std::span<const LaunchPiece> pieces, std::uint32_
         sides_.emplace_back(device_.context, outputs_.stream(sides_.size()));
     const std::size_t streams = std::min(pieces.size(), SideStreams::max_streams / launches_.in_flight());
     for (std::uint32_t pass = 0; pass < passes; ++pass) {
-        SideStreams& sides = sides_[launches_.output_of(pass)]; // whose main stream has the pass so many before it
+        SideStreams& sides =
+            sides_[launches_.output_of(pass)]; // whose main stream has the previous pass of that output
         sides.fork(streams);
         std::size_t i = 0;
         for (const LaunchPiece& piece : launches_.of_pass(pieces, pass)) {

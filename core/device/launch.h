@@ -87,8 +87,8 @@ public:
     /// launch may have all their tiles, as many passes as fit into a second are one call. take_times must call took().
     /// During the session's first pass it is called after each launch, because nothing is known yet about how long a
     /// launch takes. in_flight: passes that may be on the device together (TraceJob::in_flight); enqueue lets each pass
-    /// wait for the one that is so many before it. If a launch has room for a part of a pass only, the launches cut so
-    /// many passes as one: each holds the end of a pass and more of the next.
+    /// wait for the one that is in_flight before it. If a launch has room for a part of a pass only, the launches cut
+    /// in_flight passes as one: each holds the end of a pass and more of the next.
     void start(std::span<const LaunchParams> images, std::uint32_t passes, const Enqueue& enqueue,
                const std::function<void()>& take_times, std::uint32_t in_flight = 1);
     /// For enqueue: which of the outputs of passes in flight together a pass of the launch has.

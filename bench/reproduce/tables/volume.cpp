@@ -216,30 +216,31 @@ PaperTable volume_table(const std::vector<RowRecord>& rows)
 
 PaperTable volume_lines_table(const std::vector<SceneLines>& lines)
 {
-    PaperTable table{"volume-lines",
-                     "lengths of uniform lines, by integral geometry",
-                     volume_page,
-                     {{"scene", "scene"},
-                      {"lines", "lines", "", 0},
-                      {"mean_length", "mean", "length", 5},
-                      {"expected_length", "4 V / S", "length", 5},
-                      {"mean_off", "off", "sd", 2},
-                      {"tets", "tets", "", 0},
-                      {"tets_off", "off", "sd", 2},
-                      {"tets_testable", "testable", "%", 1},
-                      {"tets_worst", "worst", "of bound", 3},
-                      {"groups", "groups", "of tets", 0},
-                      {"groups_off", "off", "sd", 2},
-                      {"groups_testable", "testable", "%", 1},
-                      {"groups_worst", "worst", "of bound", 3},
-                      {"verdict", "verdict"}},
-                     {"Of the domain; of the tets, each by itself; and of groups of tets that follow each other in "
-                      "memory. 'off', failed from 6: of the domain, what the mean is off; of tets and groups, the sum "
-                      "of the squares of what their means are off, less its expectation; both in standard deviations. "
-                      "'worst' is the mean that is off most, over its bound: failed from 1. 'testable' tets have that "
-                      "bound below their expected length, so that a mean of 0 would fail. Too few lines: fewer than "
-                      "256, or fewer than 256 pairs of those compared have a tet in common. docs/spec/volume.md, S10, "
-                      "has the statistics. Lengths are in units of the domain."}};
+    PaperTable table{
+        "volume-lines",
+        "lengths of uniform lines, by integral geometry",
+        volume_page,
+        {{"scene", "scene"},
+         {"lines", "lines", "", 0},
+         {"mean_length", "mean", "length", 5},
+         {"expected_length", "4 V / S", "length", 5},
+         {"mean_off", "off", "sd", 2},
+         {"tets", "tets", "", 0},
+         {"tets_off", "off", "sd", 2},
+         {"tets_testable", "testable", "%", 1},
+         {"tets_worst", "worst", "of bound", 3},
+         {"groups", "groups", "of tets", 0},
+         {"groups_off", "off", "sd", 2},
+         {"groups_testable", "testable", "%", 1},
+         {"groups_worst", "worst", "of bound", 3},
+         {"verdict", "verdict"}},
+        {"The domain is tested, each tet by itself, and groups of tets that follow each other in memory. "
+         "'off', failed from 6: what the domain's mean is off; for tets and groups, the sum of the squares "
+         "of what their means are off, less its expectation; both in standard deviations. "
+         "'worst' is the mean that is off most, over its bound: failed from 1. 'testable' tets have that "
+         "bound below their expected length, so that a mean of 0 would fail. Too few lines: fewer than "
+         "256, or fewer than 256 pairs of those compared have a tet in common. docs/spec/volume.md, S10, "
+         "has the statistics. Lengths are in units of the domain."}};
     Claim claim{"uniform-lines",
                 "uniform lines have a mean length of 4 V / S in volumes V: the domain, and tets taken together"};
     std::size_t failed = 0, tested = 0;
