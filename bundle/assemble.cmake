@@ -2,7 +2,7 @@
 #                                -DVERSION= -DCUDA_CODE= -P assemble.cmake
 # BUNDLE is the folder to make, PARTS keeps packed scenes between calls, PROGRAM is the relocatable tetrace, BUILDER
 # tetrace-builder or empty, CACHE where scenes are built, CUDA_CODE the compiler of the CUDA kernels that are in it, or
-# empty.
+# empty. The environment's TETRACE_BUNDLE_SCENES, names with ; between, keeps all other scenes out: for tests.
 cmake_minimum_required(VERSION 3.25)
 include(${SOURCE}/libraries.cmake)
 include(${SOURCE}/packed.cmake)
@@ -22,8 +22,16 @@ foreach(library IN LISTS embree) # two thirds of all bytes
   pack(${library} ${name} -3 ${BUNDLE}/lib)
   file(REMOVE ${library})
 endforeach()
-pack_scenes("bunny;armadillo;banana" "cdt;rays" ${BUNDLE}/scenes scenes)
-pack_scenes("atrium;terrain;city" rays ${BUNDLE}/scenes losing) # where BVHs win
+set(both_kinds bunny armadillo banana)
+set(losing atrium terrain city) # where BVHs win
+if(DEFINED ENV{TETRACE_BUNDLE_SCENES})
+  set(wanted "^($ENV{TETRACE_BUNDLE_SCENES})$")
+  string(REPLACE ";" "|" wanted "${wanted}")
+  list(FILTER both_kinds INCLUDE REGEX ${wanted})
+  list(FILTER losing INCLUDE REGEX ${wanted})
+endif()
+pack_scenes("${both_kinds}" "cdt;rays" ${BUNDLE}/scenes scenes)
+pack_scenes("${losing}" rays ${BUNDLE}/scenes losing)
 list(APPEND scenes ${losing})
 
 glibc_needed("${PROGRAM};${XZ};${libraries}" GLIBC)

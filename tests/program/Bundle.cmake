@@ -10,8 +10,13 @@ foreach(claim steps_that_end_well_give_0 the_time_of_all_steps_shortens_later_on
 endforeach()
 
 if(TARGET bundle)
-  add_test(NAME Bundle.builds COMMAND ${CMAKE_COMMAND} --build ${CMAKE_BINARY_DIR} --target bundle)
+  # First with one scene: building and packing all of them takes two minutes.
+  add_test(NAME Bundle.builds COMMAND ${CMAKE_COMMAND} -E env TETRACE_BUNDLE_SCENES=bunny
+    ${CMAKE_COMMAND} --build ${CMAKE_BINARY_DIR} --target bundle)
+  add_test(NAME Bundle.builds_with_all_scenes COMMAND ${CMAKE_COMMAND} --build ${CMAKE_BINARY_DIR} --target bundle)
   set_tests_properties(Bundle.builds PROPERTIES FIXTURES_SETUP bundle LABELS large PROCESSORS 2 TIMEOUT 600)
+  set_tests_properties(Bundle.builds_with_all_scenes PROPERTIES FIXTURES_SETUP all_scenes DEPENDS Bundle.builds
+    LABELS "large;campaign" PROCESSORS 2 TIMEOUT 600)
   set(stub "")
   if(TARGET tetrace_stub_cuda)
     set(stub $<TARGET_FILE_DIR:tetrace_stub_cuda>)
@@ -22,5 +27,6 @@ if(TARGET bundle)
       COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/bundle_test.sh ${claim} ${CMAKE_BINARY_DIR}/bundle "${stub}")
     set_tests_properties(Bundle.${claim} PROPERTIES FIXTURES_REQUIRED bundle LABELS large TIMEOUT 600)
   endforeach()
-  set_tests_properties(Bundle.runs_all_steps_without_this_systems_drivers PROPERTIES PROCESSORS 2 LABELS "large;campaign")
+  set_tests_properties(Bundle.runs_all_steps_without_this_systems_drivers PROPERTIES
+    FIXTURES_REQUIRED "bundle;all_scenes" PROCESSORS 2 LABELS "large;campaign")
 endif()

@@ -28,8 +28,8 @@ case $claim in
 steps_that_end_well_give_0)
     tetrace_is 'echo "it ran: $*"'
     run_all 0 "$out" --quick
-    for step in devices defects check check-all check-rays bench bench-rays stress ladder bench-losing bench-host \
-        bench-schedules render-openmp render-cuda reproduce-rays reproduce; do
+    for step in devices defects check check-all check-rays bench bench-rays stress ladder bench-in-flight bench-losing \
+        bench-host bench-schedules render-openmp render-cuda reproduce-rays reproduce; do
         summary_has "^$step +ok "
         grep -q 'it ran' "$out/$step.txt" || fail "what $step printed is not kept"
     done
