@@ -85,13 +85,11 @@ void OpenclSession::compile()
     run("making the kernel", output_bytes(), [&] {
         kernel_ = cl::Kernel(program.handle(), "run_image");
         set_arguments();
-        LaunchParams nothing{};
-        nothing.width = 1;
-        nothing.tile_height = tile_height_;
-        enqueue(std::array{LaunchPiece{0, nothing, 1}}, 1);
+        require_queues(1, 1);
+        enqueue_on_nothing(1);
         queues_[0].finish();
-        enqueued_.clear();
     });
+    widest_ = 0;
     times_.compile_s += watch.seconds();
     times_.compile_cached = program.is_cached();
     program.keep();
@@ -163,6 +161,25 @@ void OpenclSession::require_queues(std::size_t queues, std::size_t counters)
         queues_.push_back(context_->make_queue());
 }
 
+void OpenclSession::enqueue_on_nothing(std::uint32_t tiles)
+{
+    LaunchParams nothing{};
+    nothing.width = 1;
+    nothing.tile_height = tile_height_;
+    queues_[0].enqueueFillBuffer(counters_[0], nothing.first_tile, 0, sizeof(cl_uint));
+    enqueue_piece({0, nothing, tiles}, 0, queues_[0], {}, nullptr);
+}
+
+/// PoCL before 6.0 makes another entry of a kernel for each wider launch, counts its users when a launch begins, and
+/// when it ends discounts one of whichever entry comes first, the newest. All use the widest one, once it is there.
+void OpenclSession::enqueue_widest(std::span<const LaunchPiece> pieces)
+{
+    const std::uint32_t tiles = std::ranges::max_element(pieces, {}, &LaunchPiece::tiles)->tiles;
+    if (!context_->found().confuses_widths || tiles <= widest_) return;
+    widest_ = tiles;
+    enqueue_on_nothing(tiles);
+}
+
 /// Persistent groups count tiles: their counters are filled before each pass, which is not a part of its time.
 void OpenclSession::enqueue(std::span<const LaunchPiece> pieces, std::uint32_t passes)
 {
@@ -200,6 +217,7 @@ void OpenclSession::enqueue_in_flight(std::span<const LaunchPiece> pieces, std::
 {
     const std::size_t outputs = launches_.in_flight(), width = std::min(pieces.size(), max_queues / outputs);
     require_queues(outputs * width, outputs * pieces.size());
+    enqueue_widest(pieces);
     std::vector<cl::Event> forked(1);
     queues_[0].enqueueMarkerWithWaitList(nullptr, &forked[0]);
     queues_[0].flush();
@@ -230,6 +248,7 @@ void OpenclSession::enqueue_in_flight(std::span<const LaunchPiece> pieces, std::
 /// A queue waits for another's events only if that one has been flushed.
 void OpenclSession::enqueue_together(std::span<const LaunchPiece> pieces, std::vector<cl::Event>* events)
 {
+    enqueue_widest(pieces);
     std::vector<cl::Event> forked(1), ended(pieces.size());
     queues_[0].enqueueMarkerWithWaitList(nullptr, &forked[0]);
     queues_[0].flush();

@@ -50,6 +50,25 @@ TEST_F(Opencl, a_second_session_finds_its_program_in_the_cache)
     }
 }
 
+// PoCL 3.1 ended the process at this: always with 16 threads, mostly with 2 (docs/findings.md, 13).
+TEST_F(Opencl, launches_that_grow_while_others_are_in_flight_give_openmps_hits)
+{
+    const DeviceRays rays(make_cubes(3), Layout::tet80);
+    for (const std::size_t device : usable) {
+        const auto session = backend.open(device, {}, rays.data(), {});
+        for (std::uint32_t round = 0; round < 20; ++round) {
+            std::vector<TraceJob> jobs;
+            for (std::uint32_t i = 1; i <= 8; ++i)
+                jobs.push_back(rays.from_outside(8, 8 * (8 * round + i)));
+            std::vector<Hit> single;
+            for (const TraceJob& job : jobs)
+                for (const Hit& hit : openmp_hits(rays, job))
+                    single.push_back(hit);
+            EXPECT_EQ(different_rays(traced(*session, jobs), single, 3), 0u) << "round " << round;
+        }
+    }
+}
+
 TEST_F(Opencl, hits_of_bvhs_are_openmps_however_much_of_a_stack_is_in_the_groups_memory)
 {
     for (const Layout layout : {Layout::bvh2, Layout::bvh4, Layout::cwbvh}) {
