@@ -17,9 +17,9 @@ copy_libraries("${PROGRAM};${XZ}" "${LOADERS}" ${BUNDLE}/lib libraries)
 copy_licences("${libraries};${XZ}" ${BUNDLE}/licences packages)
 file(COPY ${SOURCE}/../LICENSE DESTINATION ${BUNDLE})
 file(GLOB embree ${BUNDLE}/lib/libembree*)
-foreach(library IN LISTS embree) # two thirds of all bytes
+foreach(library IN LISTS embree) # larger than all others together
   get_filename_component(name ${library} NAME)
-  pack(${library} ${name} -3 ${BUNDLE}/lib)
+  pack(${library} ${name} -6 ${BUNDLE}/lib)
   file(REMOVE ${library})
 endforeach()
 set(both_kinds bunny armadillo banana)

@@ -186,6 +186,7 @@ void OpenclSession::enqueue(std::span<const LaunchPiece> pieces, std::uint32_t p
     if (launches_.in_flight() > 1) return enqueue_in_flight(pieces, passes);
     const bool is_persistent = kernel_id_.schedule == Schedule::persistent;
     require_queues(std::min(pieces.size(), max_queues), pieces.size());
+    if (pieces.size() > 1) enqueue_widest(pieces);
     for (std::uint32_t pass = 0; pass < passes; ++pass) {
         for (std::size_t i = 0; is_persistent && i < pieces.size(); ++i)
             queues_[0].enqueueFillBuffer(counters_[i], pieces[i].params.first_tile, 0, sizeof(cl_uint));
@@ -248,7 +249,6 @@ void OpenclSession::enqueue_in_flight(std::span<const LaunchPiece> pieces, std::
 /// A queue waits for another's events only if that one has been flushed.
 void OpenclSession::enqueue_together(std::span<const LaunchPiece> pieces, std::vector<cl::Event>* events)
 {
-    enqueue_widest(pieces);
     std::vector<cl::Event> forked(1), ended(pieces.size());
     queues_[0].enqueueMarkerWithWaitList(nullptr, &forked[0]);
     queues_[0].flush();
