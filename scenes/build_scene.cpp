@@ -402,7 +402,7 @@ void read_mesh_only(const fs::path& mesh, const fs::path& out, const std::string
 std::vector<TetsAttempt> fallback_attempts(const BuildOptions& options)
 {
     if (options.switches != default_build(options.tets).switches) return {};
-    constexpr std::uint32_t first_orders = 8, orders_of_welds = 10, all_orders = 32;
+    constexpr std::uint32_t first_orders = 8, orders_of_welds = 10, orders_of_quality = 5, all_orders = 32;
     const std::string careful = options.switches + "0/2/2", quality = default_build(TetsKind::cdt).switches;
     std::vector<TetsAttempt> all;
     if (options.switches != quality)
@@ -413,9 +413,13 @@ std::vector<TetsAttempt> fallback_attempts(const BuildOptions& options)
     if (options.switches != quality) all.push_back({quality});
     all.push_back({quality + "MT1e-13"});
     all.push_back({"p"});
-    for (const double weld : {0x1p-20, 0x1p-18, 0x1p-16})
-        for (std::uint32_t order = 0; options.repair && order < orders_of_welds; ++order)
+    for (const double weld : {0x1p-20, 0x1p-18, 0x1p-16}) {
+        if (!options.repair) break;
+        for (std::uint32_t order = 0; order < orders_of_welds; ++order)
             all.push_back({order == 0 ? options.switches : careful, order, weld});
+        for (std::uint32_t order = 0; options.switches != quality && order < orders_of_quality; ++order)
+            all.push_back({quality + "0/2/2", order, weld});
+    }
     for (std::uint32_t order = first_orders; order < all_orders; ++order)
         all.push_back({careful, order});
     all.push_back({"pMT1e-13"});

@@ -307,6 +307,9 @@ TEST_F(Load, tries_all_other_ways_and_says_how_many_where_none_helps)
     EXPECT_TRUE(std::ranges::any_of(fallback_attempts(rays), is_welded));
     EXPECT_EQ(fallback_attempts(rays).at(0), (TetsAttempt{"pYO0"})) << "TetGen's own optimiser may take all the time";
     EXPECT_EQ(fallback_attempts(rays).at(1), (TetsAttempt{"pYT1e-13O0"}));
+    EXPECT_TRUE(std::ranges::any_of(fallback_attempts(rays), [&](const TetsAttempt& attempt) {
+        return is_welded(attempt) && attempt.switches == "pq5Y0/2/2";
+    })) << "some meshes have tets by the CDT's switches alone";
     rays.repair = false;
     EXPECT_TRUE(std::ranges::none_of(fallback_attempts(rays), is_welded)) << "only a repair may move vertices";
     rays.switches = "pq2";
