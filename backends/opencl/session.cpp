@@ -170,8 +170,8 @@ void OpenclSession::enqueue_on_nothing(std::uint32_t tiles)
     enqueue_piece({0, nothing, tiles}, 0, queues_[0], {}, nullptr);
 }
 
-/// PoCL before 6.0 makes a new entry of a kernel for each wider launch. A launch adds a use to its own entry, and at its
-/// end takes one from the newest (docs/findings.md, 13). Once the widest launch has run, all use its entry.
+/// PoCL before 6.0 makes a new entry of a kernel for each wider launch. A launch adds a use to its own entry, and at
+/// its end takes one from the newest (docs/findings.md, 13). Once the widest launch has run, all use its entry.
 void OpenclSession::enqueue_widest(std::span<const LaunchPiece> pieces)
 {
     const std::uint32_t tiles = std::ranges::max_element(pieces, {}, &LaunchPiece::tiles)->tiles;
