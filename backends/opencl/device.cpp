@@ -122,7 +122,7 @@ void describe(const cl::Platform& platform, FoundDevice& found)
     facts.driver = platform_name + " " + driver_version;
     facts.implementation = implementation_of(platform_name, driver_version, platform_version);
     found.keeps_programs = facts.implementation.starts_with("pocl-");
-    found.confuses_widths = found.keeps_programs && facts.implementation < "pocl-6"; // "pocl-10" too: harmless
+    found.mixes_up_widths = found.keeps_programs && facts.implementation < "pocl-6"; // "pocl-10" too: harmless
     facts.uuid = uuid_of(device);
     facts.pci = pci_of(device);
     facts.library = library_of(platform);

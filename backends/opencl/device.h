@@ -17,7 +17,7 @@ struct FoundDevice {
     bool divides_correctly = false; ///< offers correctly rounded division and square root, as a build option
     /// PoCL keeps compiled kernels in a cache of its own, and compiles each once more if it is asked for its program.
     bool keeps_programs = false;
-    bool confuses_widths = false; ///< ends the process if launches of one kernel grow in flight (findings.md, 13)
+    bool mixes_up_widths = false; ///< ends the process if launches of one kernel grow in flight (findings.md, 13)
     bool has_ballots = false;     ///< of subgroups: cl_khr_subgroup_ballot
     bool has_fences = false;      ///< between groups, in OpenCL C 3.0
     unsigned stack_top = 0;       ///< how many entries of a ray's stack are in local memory (kernels/stack.h)

@@ -89,7 +89,7 @@ void OpenclSession::compile()
         enqueue_on_nothing(1);
         queues_[0].finish();
     });
-    widest_ = 0;
+    max_tiles_ = 0;
     times_.compile_s += watch.seconds();
     times_.compile_cached = program.is_cached();
     program.keep();
@@ -172,11 +172,11 @@ void OpenclSession::enqueue_on_nothing(std::uint32_t tiles)
 
 /// PoCL before 6.0 makes a new entry of a kernel for each wider launch. A launch adds a use to its own entry, and at
 /// its end takes one from the newest (docs/findings.md, 13). Once the widest launch has run, all use its entry.
-void OpenclSession::enqueue_widest(std::span<const LaunchPiece> pieces)
+void OpenclSession::enqueue_widest_first(std::span<const LaunchPiece> pieces)
 {
     const std::uint32_t tiles = std::ranges::max_element(pieces, {}, &LaunchPiece::tiles)->tiles;
-    if (!context_->found().confuses_widths || tiles <= widest_) return;
-    widest_ = tiles;
+    if (!context_->found().mixes_up_widths || tiles <= max_tiles_) return;
+    max_tiles_ = tiles;
     enqueue_on_nothing(tiles);
 }
 
@@ -186,7 +186,7 @@ void OpenclSession::enqueue(std::span<const LaunchPiece> pieces, std::uint32_t p
     if (launches_.in_flight() > 1) return enqueue_in_flight(pieces, passes);
     const bool is_persistent = kernel_id_.schedule == Schedule::persistent;
     require_queues(std::min(pieces.size(), max_queues), pieces.size());
-    if (pieces.size() > 1) enqueue_widest(pieces);
+    if (pieces.size() > 1) enqueue_widest_first(pieces);
     for (std::uint32_t pass = 0; pass < passes; ++pass) {
         for (std::size_t i = 0; is_persistent && i < pieces.size(); ++i)
             queues_[0].enqueueFillBuffer(counters_[i], pieces[i].params.first_tile, 0, sizeof(cl_uint));
@@ -218,7 +218,7 @@ void OpenclSession::enqueue_in_flight(std::span<const LaunchPiece> pieces, std::
 {
     const std::size_t outputs = launches_.in_flight(), width = std::min(pieces.size(), max_queues / outputs);
     require_queues(outputs * width, outputs * pieces.size());
-    enqueue_widest(pieces);
+    enqueue_widest_first(pieces);
     std::vector<cl::Event> forked(1);
     queues_[0].enqueueMarkerWithWaitList(nullptr, &forked[0]);
     queues_[0].flush();

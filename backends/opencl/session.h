@@ -40,7 +40,7 @@ private:
     /// Runs the kernel on no pixel, in as many groups as these tiles take.
     void enqueue_on_nothing(std::uint32_t tiles);
     /// Before pieces that are in flight together, for drivers that require the widest launch to come first.
-    void enqueue_widest(std::span<const LaunchPiece> pieces);
+    void enqueue_widest_first(std::span<const LaunchPiece> pieces);
     /// All pieces together. events: gets their events, or null.
     void enqueue_together(std::span<const LaunchPiece> pieces, std::vector<cl::Event>* events);
     /// Passes that are in flight together.
@@ -72,7 +72,7 @@ private:
     std::uint64_t scene_bytes_ = 0;
     SetupTimes times_;
     Launches launches_;
-    std::uint32_t widest_ = 0; ///< tiles of the widest launch that enqueue_widest() has made of this program
+    std::uint32_t max_tiles_ = 0;          ///< of the launches that enqueue_widest_first() has made of this program
     std::vector<cl::CommandQueue> queues_; ///< the first is for all but the further pieces of a launch
     cl::Kernel kernel_;
     std::vector<cl::Buffer> arrays_;                   ///< by binding

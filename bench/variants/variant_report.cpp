@@ -157,7 +157,8 @@ bool has_failed(const VariantRow& row)
 /// Empty if none ran.
 std::optional<CheckVerdict> verdict_of(const std::vector<VariantRow>& rows)
 {
-    CheckTally tally{"variant", "variants"};
+    const bool has_unchanged = std::ranges::any_of(rows, &VariantRow::fails_as_it_is);
+    CheckTally tally = has_unchanged ? CheckTally{"program", "programs"} : CheckTally{"variant", "variants"};
     for (const VariantRow& row : rows) {
         if (row.fails_as_it_is) tally.add(row.label, true);
         for (std::size_t i = 0; i < row.ran; ++i)

@@ -280,5 +280,5 @@ TEST(VariantRows, whose_text_as_it_is_fails_fail_the_check)
     EXPECT_EQ(exit_code({right, failing}), 1);
     EXPECT_TRUE(contains(variant_junit({right, failing}), "failures=\"1\""));
     const Report report = variant_report({right, failing}, {}, {}, {});
-    EXPECT_TRUE(contains(report.sheet.text({}), "FAILED    1 of 3 variants")) << report.sheet.text({});
+    EXPECT_TRUE(contains(report.sheet.text({}), "FAILED    1 of 3 programs")) << report.sheet.text({});
 }
