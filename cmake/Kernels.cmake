@@ -13,13 +13,23 @@ endif()
 # TETRACE_LAYOUTS and TETRACE_KERNELS, as structure/method/layout, are those of ours in kernels/kernel_list.inc, in its
 # order; every backend compiles them in each of TETRACE_MATH_MODES. TETRACE_DOUBLE_KERNELS compute in double precision:
 # openmp alone compiles them, in exact mode. Also set: TETRACE_FAMILY_<layout> and TETRACE_TASKS_<method>_<layout>;
-# TETRACE_NATIVE_KERNELS are those with schedule native.
+# TETRACE_NATIVE_KERNELS are those with schedule native. TETRACE_TASKS, all in their order; TETRACE_CROSSING_TASKS.
 set(tetrace_kernel_list ${PROJECT_SOURCE_DIR}/kernels/kernel_list.inc)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${tetrace_kernel_list})
 set(TETRACE_LAYOUTS "")
 set(TETRACE_KERNELS "")
 set(TETRACE_NATIVE_KERNELS "")
 set(TETRACE_DOUBLE_KERNELS "")
+file(STRINGS ${tetrace_kernel_list} rows REGEX "^[A-Z_]*TASK[(][a-z]+, ")
+set(TETRACE_TASKS "")
+set(TETRACE_CROSSING_TASKS "")
+foreach(row IN LISTS rows)
+  string(REGEX MATCH "^([A-Z_]*)TASK.([a-z]+)," ignored "${row}")
+  list(APPEND TETRACE_TASKS ${CMAKE_MATCH_2})
+  if(CMAKE_MATCH_1 STREQUAL "CROSSING_")
+    list(APPEND TETRACE_CROSSING_TASKS ${CMAKE_MATCH_2})
+  endif()
+endforeach()
 file(STRINGS ${tetrace_kernel_list} rows REGEX "^METHOD.*, doubles[)]")
 set(double_methods "")
 foreach(row IN LISTS rows)

@@ -410,15 +410,23 @@ std::vector<TetsAttempt> fallback_attempts(const BuildOptions& options)
             all.push_back({options.switches + unoptimised});
     for (std::uint32_t order = 0; order < first_orders; ++order)
         all.push_back({careful, order});
+    const auto add_welded = [&](double weld) {
+        for (std::uint32_t order = 0; options.repair && order < orders_of_welds; ++order)
+            all.push_back({order == 0 ? options.switches : careful, order, weld});
+    };
+    const auto add_welded_quality = [&](double weld) {
+        if (!options.repair || options.switches == quality) return;
+        for (std::uint32_t order = 0; order < orders_of_quality; ++order)
+            all.push_back({quality + "0/2/2", order, weld});
+    };
+    add_welded(0x1p-20); // before those that may take their whole share of the time
     if (options.switches != quality) all.push_back({quality});
     all.push_back({quality + "MT1e-13"});
     all.push_back({"p"});
-    for (const double weld : {0x1p-20, 0x1p-18, 0x1p-16}) {
-        if (!options.repair) break;
-        for (std::uint32_t order = 0; order < orders_of_welds; ++order)
-            all.push_back({order == 0 ? options.switches : careful, order, weld});
-        for (std::uint32_t order = 0; options.switches != quality && order < orders_of_quality; ++order)
-            all.push_back({quality + "0/2/2", order, weld});
+    add_welded_quality(0x1p-20);
+    for (const double weld : {0x1p-18, 0x1p-16}) {
+        add_welded(weld);
+        add_welded_quality(weld);
     }
     for (std::uint32_t order = first_orders; order < all_orders; ++order)
         all.push_back({careful, order});

@@ -36,9 +36,8 @@ HOST_ENTRY(rays_persistent_)
 #endif
 
 #ifdef CROSSES_TETS
-HOST_ENTRY(segments_tiles_)
-HOST_ENTRY(tally_tiles_)
-HOST_ENTRY(absorb_tiles_)
+#define CROSSING_TASK(name, ...) HOST_ENTRY(name##_tiles_)
+#include "kernels/kernel_list.inc"
 #endif
 
 #ifdef SEARCHES_EXITS

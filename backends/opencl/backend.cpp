@@ -31,8 +31,11 @@ std::vector<KernelFile> files_of(const KernelId& kernel)
     if (kernel.task == Task::trace && kernel.structure == Structure::cdt)
         what += "-DSTARTS_OUTSIDE for rays from outside; ";
     if (kernel.task == Task::trace)
-        what += "-DRAYS for given rays; -DSEARCH for single exit searches; -DSEGMENTS for all tets of given rays; "
-                "-DTALLY for these with sums per tet; -DABSORB for the light of a medium; ";
+        for (const Task task : values_of<Task>())
+            if (traits_of(task).takes_rays) {
+                what += opencl::define_of(task);
+                what.append(" for ").append(traits_of(task).what).append("; ");
+            }
     if (traits_of(kernel.task).finds_hits) what += "-DPERSISTENT for that schedule; ";
     what += "-cl-denorms-are-zero on processors; -cl-fp32-correctly-rounded-divide-sqrt where the device offers it";
     return {{name + ".cl", what,

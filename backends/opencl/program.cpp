@@ -49,15 +49,20 @@ std::string_view math_options(MathMode math)
     return math == MathMode::fast ? " -DMATH_FAST -cl-fast-relaxed-math -cl-denorms-are-zero" : "";
 }
 
+std::string define_of(Task task)
+{
+    std::string define = "-D";
+    std::ranges::transform(name_of(task), std::back_inserter(define), [](char c) { return std::toupper(c); });
+    return define;
+}
+
 std::string defines_of(const KernelId& kernel, unsigned tile_height, bool in_parts, bool starts_outside,
                        unsigned stack_top)
 {
     std::string defines = "-DGROUP_ITEMS=" + std::to_string(TILE_WIDTH * tile_height);
     if (kernel.schedule == Schedule::persistent) defines += " -DPERSISTENT";
     if (traits_of(kernel.task).takes_rays) {
-        defines += " -D"; // RAYS, SEARCH, SEGMENTS, TALLY, ABSORB
-        std::ranges::transform(name_of(kernel.task), std::back_inserter(defines),
-                               [](char c) { return std::toupper(c); });
+        defines += " " + define_of(kernel.task);
     }
     if (in_parts) defines += " -DTETS_IN_PARTS";
     if (starts_outside) defines += " -DSTARTS_OUTSIDE";

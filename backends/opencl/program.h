@@ -25,6 +25,9 @@ struct ProgramId {
     std::filesystem::path file = {}; ///< its text, in place of the embedded one; empty: that
 };
 
+/// "-DSEGMENTS": by which kernel.cl knows a task that is given rays.
+[[nodiscard]] std::string define_of(Task task);
+
 /// ProgramId::defines of a kernel. in_parts: the tets are in several buffers. starts_outside: no ray of an image starts
 /// in a tet. stack_top: as FoundDevice has it.
 [[nodiscard]] std::string defines_of(const KernelId& kernel, unsigned tile_height, bool in_parts, bool starts_outside,

@@ -61,12 +61,7 @@ std::string what_of(const std::string& variant)
     if (variant == "miss" || variant == "hit")
         return "SPIR-V of what a ray-tracing pipeline runs for a " + variant + ", as the driver gets it";
     std::string text = "SPIR-V of ";
-    text += variant.starts_with("rays")       ? "given rays"
-            : variant.starts_with("search")   ? "exit searches"
-            : variant.starts_with("segments") ? "all tets of given rays"
-            : variant.starts_with("tally")    ? "the sums of given rays' lengths per tet"
-            : variant.starts_with("absorb")   ? "the light of given rays in a medium"
-                                              : "primary rays";
+    text += traits_of(*value_named<Task>(variant.substr(0, variant.find('_')))).what;
     if (variant.ends_with("_parts")) text += ", with the tets in several buffers";
     if (variant.ends_with("_texels")) text += ", with the scene read as texels, as on emulated devices";
     if (variant.ends_with("_leaves_texels")) text += "; leaves rays at ties to another program";

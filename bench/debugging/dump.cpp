@@ -113,19 +113,6 @@ KernelId kernel_of_entry(const Options& options, KernelId kernel)
     return kernel;
 }
 
-std::string_view rays_of_task(Task task)
-{
-    switch (task) {
-    case Task::trace: return "primary rays";
-    case Task::rays: return "given rays";
-    case Task::search: return "exit searches";
-    case Task::segments: return "all tets of given rays";
-    case Task::tally: return "sums of given rays' lengths per tet";
-    case Task::absorb: return "given rays in a medium";
-    }
-    return "";
-}
-
 bool is_kept(const Options& options, const Backend& backend, std::size_t index)
 {
     const Device& device = backend.devices()[index];
@@ -150,7 +137,7 @@ std::vector<KernelFile> dumped_files(const Options& options, const std::vector<B
         return {variant.text_file(variant.text().with(variant.text().named(options.changes)),
                                   fmt::format("; with the changes {}. The command is for {}; the text has all "
                                               "entry points",
-                                              fmt::join(options.changes, ", "), rays_of_task(entered.task)))};
+                                              fmt::join(options.changes, ", "), traits_of(entered.task).what))};
     }
     if (files.empty())
         throw Error(

@@ -33,6 +33,15 @@ std::string defect_names()
     return join_alternatives(names);
 }
 
+/// "; 'rays', given rays", and so on.
+std::string entry_help()
+{
+    std::string help;
+    for (const Task task : values_of<Task>())
+        if (traits_of(task).takes_rays) help += fmt::format("; '{}', {}", name_of(task), traits_of(task).what);
+    return help;
+}
+
 /// What chosen_defect() accepts after a name.
 constexpr const char* launch_of_defect =
     "NAME:ITEMS:GROUP, ITEMS 1 to 1000000 and GROUP 1 to 128 of a stressor (16 and 16 of a reduced kernel), at most "
@@ -58,10 +67,9 @@ std::vector<OptionRow> inspect_options()
          usual_for(every_verb, "compile for this GPU: gfx1100, sm_90, ...")},
         {experiments, "--entry", "NAME",
          "Keep the entry points of this kind: 'outside' and 'inside', primary rays that start outside the domain or "
-         "in a tet; 'rays', given rays; 'search', exit searches of table5; 'segments', given rays with all their tets; "
-         "'tally', the same with sums per tet; 'absorb', the light of a medium. 'dump' writes the command of one of "
-         "these "
-         "with a variant's text. Default: all; of 'dump', outside.",
+         "in a tet" +
+             entry_help() +
+             ". 'dump' writes the command of one of these with a variant's text. Default: all; of 'dump', outside.",
          bit(Verb::inspect) | bit(Verb::dump), true, append("--entry", &Options::entries)},
         {"Compilers", "--require-target", "GPU",
          "Fail with exit code 3 unless this target's compiler is here and compiles every program; "

@@ -54,6 +54,23 @@ bool is_projects(const KernelId& kernel)
            });
 }
 
+/// What --task takes.
+std::vector<Task> asked_tasks()
+{
+    std::vector<Task> tasks;
+    for (const Task task : values_of<Task>())
+        if (task == Task::trace || traits_of(task).crosses) tasks.push_back(task);
+    return tasks;
+}
+
+std::string crossing_help()
+{
+    std::string help;
+    for (const Task task : asked_tasks())
+        if (traits_of(task).crosses) help += fmt::format("; '{}', {}", name_of(task), traits_of(task).help);
+    return help;
+}
+
 /// "atrium, city, terrain": scenes of the catalogue.
 std::string scene_names(bool (*is_named)(const CatalogueEntry&))
 {
@@ -208,14 +225,10 @@ std::vector<OptionRow> row_options()
          reproducing | bit(Verb::dump) | bit(Verb::inspect), true, append_text(&Options::devices),
          usual_for(bit(Verb::dump), "devices whose name, type or number has this text")},
         {"Rows", "--task", "NAME",
-         "What rows compute: 'trace', the hit of each ray; 'segments', every tet that each ray crosses, and the length "
-         "inside it, from where the ray enters the domain, or from its origin, to where it leaves the domain "
-         "(docs/volume.md); 'tally', the same and, for each tet, the sum of the lengths of all rays inside it; "
-         "'absorb', the light of a medium that glows and absorbs, with a value and a density per tet. These are for "
-         "maria and project, in exact mode, and for rays of kinds primary, diffuse and random, all of which are "
-         "given. Default: trace.",
-         measuring | bit(Verb::dump) | bit(Verb::page), true,
-         append("--task", &Options::tasks, {Task::trace, Task::segments, Task::tally, Task::absorb})},
+         "What rows compute: 'trace', the hit of each ray" + crossing_help() +
+             ". These are for maria and project, in exact mode, and for rays of kinds primary, diffuse and random, all "
+             "of which are given. Default: trace.",
+         measuring | bit(Verb::dump) | bit(Verb::page), true, append("--task", &Options::tasks, asked_tasks())},
         {"Rows", "--rays", "KIND",
          "Trace rays of this kind: 'primary', the image's own, made by the kernels. The others are made on the "
          "host, from the primary hits: 'shadow', towards a light, and 'ao', short rays in directions around the "

@@ -76,13 +76,6 @@ enum class PaperBuild { ours, paper, rays };
 template <>
 inline constexpr auto enum_names<PaperBuild> = names_up_to<PaperBuild::rays>("ours", "paper", "rays");
 
-/// What rays an entry point of a kernel is for: primary ones from outside the domain, primary ones from inside, and
-/// those of each task that is given rays, by its name.
-enum class Entry { outside, inside, rays, search, segments, tally, absorb };
-template <>
-inline constexpr auto enum_names<Entry> = names_up_to<Entry::absorb>("outside", "inside", "rays", "search", "segments",
-                                                                     "tally", "absorb");
-
 /// The number of exit searches for Table 5. Default: the paper's.
 struct SearchSize {
     std::uint32_t tets = 10'000;

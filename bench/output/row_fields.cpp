@@ -21,6 +21,18 @@ json text_or_nothing(const std::string& text)
     return text.empty() ? json() : json(text);
 }
 
+/// The tasks that rows name.
+const std::string& schema_of_task()
+{
+    static const std::string schema = [] {
+        std::vector<std::string> names;
+        for (const Task task : values_of<Task>())
+            if (traits_of(task).crosses) names.push_back(fmt::format("\"{}\"", name_of(task)));
+        return fmt::format("{{ \"enum\": [{}] }}", fmt::join(names, ", "));
+    }();
+    return schema;
+}
+
 /// A name of kernels/kernel_list.inc.
 template <class Name>
 auto in_kernel(Name KernelId::*member)
@@ -273,8 +285,7 @@ std::vector<RowField> identity_fields()
                  read_into(row.key.kernel.task, value);
                  if (!traits_of(row.key.kernel.task).crosses) value.reject("is not a task that rows name");
              }),
-         recorded(R"({ "enum": ["segments", "tally", "absorb"] })", optional, "left out of rows that trace"),
-         csv("task")},
+         recorded(schema_of_task().c_str(), optional, "left out of rows that trace"), csv("task")},
         {"", "rays", &RowKey::rays,
          recorded(R"({ "enum": ["primary", "shadow", "ao", "diffuse", "random"] })", required, "their kind"),
          csv("rays")},

@@ -118,14 +118,10 @@ const AnswerForm& answers_of(Task task)
                                      "crossings",    text_of_segments, mean_of_segments};
     static const AnswerForm absorbed{count_absorbed, json_of_absorbed, absorbed_of_json,
                                      "light",        text_of_absorbed, mean_of_absorbed};
-    switch (task) {
-    case Task::trace:
-    case Task::rays: return hits;
-    case Task::segments:
-    case Task::tally: return segments; // its sums have no form: they are judged as they are
-    case Task::absorb: return absorbed;
-    case Task::search: break;
-    }
+    const TaskTraits& traits = traits_of(task);
+    if (traits.finds_hits) return hits;
+    if (traits.absorbs) return absorbed;
+    if (traits.crosses) return segments; // a tally's sums have no form: they are judged as they are
     throw Error(ErrorKind::internal, "answers_of: exit searches find faces");
 }
 

@@ -26,8 +26,10 @@ constexpr unsigned bit(T value)
 const std::vector<KernelRow>& kernel_rows()
 {
     // The list's words are these constants.
-    constexpr unsigned trace = bit(Task::trace), rays = bit(Task::rays), search = bit(Task::search),
-                       segments = bit(Task::segments), tally = bit(Task::tally), absorb = bit(Task::absorb);
+#define TASK(name, ...) constexpr unsigned name = bit(Task::name);
+#define GIVEN_TASK(name, ...) constexpr unsigned name = bit(Task::name);
+#define CROSSING_TASK(name, ...) constexpr unsigned name = bit(Task::name);
+#include "kernels/kernel_list.inc"
     constexpr unsigned tiles = bit(Schedule::tiles), persistent = bit(Schedule::persistent),
                        packets = bit(Schedule::packets), native = bit(Schedule::native),
                        pipeline = bit(Schedule::pipeline);
@@ -165,18 +167,28 @@ std::string name_of(const KernelId& kernel)
 
 const TaskTraits& traits_of(Task task)
 {
-    static constexpr TaskTraits trace{.finds_hits = true, .words = HIT_WORDS},
-        rays{.takes_rays = true, .finds_hits = true, .words = HIT_WORDS}, search{.takes_rays = true, .words = 1},
-        segments{.takes_rays = true, .crosses = true, .words = HIT_WORDS},
-        tally{.takes_rays = true, .crosses = true, .tallies = true, .words = HIT_WORDS},
-        absorb{.takes_rays = true, .crosses = true, .absorbs = true, .words = HIT_WORDS};
     switch (task) {
-    case Task::trace: return trace;
-    case Task::rays: return rays;
-    case Task::search: return search;
-    case Task::segments: return segments;
-    case Task::tally: return tally;
-    case Task::absorb: return absorb;
+#define TASK(name, text, count, ...)                                                                                   \
+    case Task::name: {                                                                                                 \
+        static constexpr TaskTraits traits{.what = text, .words = count __VA_OPT__(, ) __VA_ARGS__};                   \
+        return traits;                                                                                                 \
+    }
+#define GIVEN_TASK(name, text, count, ...)                                                                             \
+    case Task::name: {                                                                                                 \
+        static constexpr TaskTraits traits{                                                                            \
+            .what = text, .words = count, .takes_rays = true __VA_OPT__(, ) __VA_ARGS__};                              \
+        return traits;                                                                                                 \
+    }
+#define CROSSING_TASK(name, text, of_task, ...)                                                                        \
+    case Task::name: {                                                                                                 \
+        static constexpr TaskTraits traits{.what = text,                                                               \
+                                           .help = of_task,                                                            \
+                                           .words = HIT_WORDS,                                                         \
+                                           .takes_rays = true,                                                         \
+                                           .crosses = true __VA_OPT__(, ) __VA_ARGS__};                                \
+        return traits;                                                                                                 \
+    }
+#include "kernels/kernel_list.inc"
     }
     throw Error(ErrorKind::internal, "traits_of: no such task");
 }

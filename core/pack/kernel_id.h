@@ -2,6 +2,8 @@
 
 #include "core/base/enum_names.h"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -57,20 +59,49 @@ inline constexpr auto enum_names<Schedule> = names_up_to<Schedule::pipeline>("ti
 /// What a kernel does: it traces the primary rays of an image, traces given rays, searches the exit face of a single
 /// tet for each given ray, or crosses every tet on given rays (core/rays/segments.h), for task tally with the sum of
 /// the lengths in each tet, for task absorb with the light of a medium there (core/rays/absorbed.h).
-enum class Task { trace, rays, search, segments, tally, absorb };
+enum class Task {
+#define TASK(name, ...) name,
+#define GIVEN_TASK(name, ...) name,
+#define CROSSING_TASK(name, ...) name,
+#include "kernels/kernel_list.inc"
+};
 template <>
-inline constexpr auto enum_names<Task> = names_up_to<Task::absorb>("trace", "rays", "search", "segments", "tally",
-                                                                   "absorb");
-/// What those who know nothing else of a task ask of it.
+inline constexpr auto enum_names<Task> = std::to_array<std::string_view>({
+#define TASK(name, ...) #name,
+#define GIVEN_TASK(name, ...) #name,
+#define CROSSING_TASK(name, ...) #name,
+#include "kernels/kernel_list.inc"
+});
+/// What rays an entry point of a kernel is for: primary ones from outside the domain, primary ones from inside, and
+/// those of each task that is given rays, by its name.
+enum class Entry {
+    outside,
+    inside,
+#define GIVEN_TASK(name, ...) name,
+#define CROSSING_TASK(name, ...) name,
+#include "kernels/kernel_list.inc"
+};
+template <>
+inline constexpr auto enum_names<Entry> = std::to_array<std::string_view>({
+    "outside",
+    "inside",
+#define GIVEN_TASK(name, ...) #name,
+#define CROSSING_TASK(name, ...) #name,
+#include "kernels/kernel_list.inc"
+});
+
+/// What those who know nothing else of a task ask of it, from its row in kernels/kernel_list.inc.
 struct TaskTraits {
-    bool takes_rays = false; ///< given to a session; else they are an image's
+    std::string_view what = {}; ///< "given rays": the rays or their answers
+    std::string_view help = {}; ///< that of --task, for tasks that cross tets
+    std::size_t words = 0;      ///< of a ray's answer
+    bool takes_rays = false;    ///< given to a session; else they are an image's
     bool finds_hits = false; ///< its answers are hits (core/rays/hit.h), in any schedule and math mode that the kernel
                              ///< has; other tasks have only schedule tiles
     bool crosses = false; ///< it goes through occlusive faces, to where a ray leaves the domain: no ray has an end, and
                           ///< math mode is exact
     bool absorbs = false; ///< it crosses a medium, and ends where too little light passes
     bool tallies = false; ///< it has a sum of lengths per tet, too, after the answers of the rays
-    std::size_t words = 0; ///< of a ray's answer
 };
 [[nodiscard]] const TaskTraits& traits_of(Task task);
 

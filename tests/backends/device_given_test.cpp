@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/device/given_quads.h"
 #include "core/device/self_test.h"
+#include "tests/backends/each_device.h"
 #include "tests/support/bvh_scene.h"
 #include "tests/support/device_rays.h"
 #include "tests/support/given_scene.h"
@@ -52,11 +53,6 @@ protected:
 
     GivenScene cubes{40, false, 6};
 };
-
-KernelId bvh_kernel(Layout layout, Task task)
-{
-    return {.structure = Structure::bvh, .method = Method::single, .layout = layout, .task = task};
-}
 
 } // namespace
 

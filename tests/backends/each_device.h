@@ -18,6 +18,12 @@ namespace tetrace::test {
 /// Before the instance is made: any message of Vulkan's validation layers, if they are installed, fails a case.
 [[maybe_unused]] inline const int validation_is_on = ::setenv("TETRACE_VULKAN_VALIDATION", "1", 1);
 
+/// The BVHs' kernel of a layout for a task.
+[[nodiscard]] inline KernelId bvh_kernel(Layout layout, Task task)
+{
+    return {.structure = Structure::bvh, .method = Method::single, .layout = layout, .task = task};
+}
+
 /// An API, and what is claimed of it in addition to what is claimed of all.
 struct Api {
     std::string name;

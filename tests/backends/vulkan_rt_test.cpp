@@ -3,6 +3,8 @@
 #include "backends/vulkan/session.h"
 #include "bench/truth/oracle.h"
 #include "core/device/given_quads.h"
+#include "tests/backends/each_device.h"
+#include "tests/support/device_rays.h"
 #include "tests/support/given_scene.h"
 #include "tests/support/temporary_folder.h"
 
@@ -21,8 +23,6 @@ using namespace tetrace::test;
 namespace {
 
 /// Before the instance is made: in all builds, not only in debug ones.
-[[maybe_unused]] const int validation_is_on = ::setenv("TETRACE_VULKAN_VALIDATION", "1", 1);
-
 constexpr std::array tracers = {vulkan::RayTracer::queries, vulkan::RayTracer::pipeline};
 
 KernelId rt_kernel(vulkan::RayTracer tracer, Task task)
@@ -39,13 +39,6 @@ std::vector<std::string> extensions_of(vulkan::RayTracer tracer)
 {
     const auto names = vulkan::ray_extensions(tracer);
     return {names.begin(), names.end()};
-}
-
-std::vector<Hit> traced(Session& session, const TraceJob& job)
-{
-    std::vector<Hit> hits(std::size_t{job.width} * job.height);
-    EXPECT_GT(session.trace(job, hits), 0);
-    return hits;
 }
 
 std::vector<Hit> answers(Session& session, const RaySet& set, const TriangleMesh& mesh)

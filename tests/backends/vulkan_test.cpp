@@ -5,6 +5,7 @@
 #include "backends/vulkan/instance.h"
 #include "backends/vulkan/session.h"
 #include "core/device/given_quads.h"
+#include "tests/backends/each_device.h"
 #include "tests/support/bvh_scene.h"
 #include "tests/support/device_rays.h"
 #include "tests/support/given_scene.h"
@@ -18,8 +19,6 @@ using namespace tetrace::test;
 namespace {
 
 /// Before the instance is made: in all builds, not only in debug ones.
-[[maybe_unused]] const int validation_is_on = ::setenv("TETRACE_VULKAN_VALIDATION", "1", 1);
-
 class Vulkan : public UsableDevices {
 protected:
     Vulkan() : UsableDevices(vulkan_backend()) {}
@@ -128,11 +127,6 @@ void with_devices_of_all_kinds(const std::function<void(const vulkan::FoundDevic
                 expect_right(found);
             }
     }
-}
-
-KernelId bvh_kernel(Layout layout, Task task)
-{
-    return {.structure = Structure::bvh, .method = Method::single, .layout = layout, .task = task};
 }
 
 } // namespace

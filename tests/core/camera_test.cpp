@@ -11,13 +11,13 @@ namespace {
 
 const BoundingSphere sphere{{0.125, -0.25, 0.0625}, 0.75};
 /// Its box has that sphere.
-const TriangleMesh mesh{{{-0.375F, -0.75F, -0.1875F}, {0.625F, 0.25F, 0.3125F}, {0.625F, -0.75F, 0.3125F}},
-                        {{0, 1, 2}}};
+const TriangleMesh seen_triangle{{{-0.375F, -0.75F, -0.1875F}, {0.625F, 0.25F, 0.3125F}, {0.625F, -0.75F, 0.3125F}},
+                                 {{0, 1, 2}}};
 
 std::uint64_t hash_of_views(CameraSet set)
 {
     std::uint64_t hash = 0;
-    for (const Camera& camera : make_cameras(set, mesh)) {
+    for (const Camera& camera : make_cameras(set, seen_triangle)) {
         const View view[] = {make_view(camera, 640, 480)};
         hash = hash_of(view, hash);
     }
@@ -29,7 +29,7 @@ std::uint64_t hash_of_views(CameraSet set)
 TEST(Camera, sets_have_their_number_of_views)
 {
     for (const CameraSet set : values_of<CameraSet>())
-        EXPECT_EQ(make_cameras(set, mesh).size(), view_count(set)) << name_of(set);
+        EXPECT_EQ(make_cameras(set, seen_triangle).size(), view_count(set)) << name_of(set);
     EXPECT_EQ(view_count(CameraSet::orbit), 1282u);
 }
 
@@ -43,10 +43,10 @@ TEST(Camera, views_are_reproducible_to_the_bit)
 
 TEST(Camera, distances_are_those_of_the_set)
 {
-    for (const Camera& camera : make_cameras(CameraSet::orbit, mesh))
+    for (const Camera& camera : make_cameras(CameraSet::orbit, seen_triangle))
         EXPECT_NEAR(length(to_double(camera.origin) - sphere.centre), 2 * sphere.radius, 1e-6);
     double nearest = 9, farthest = 0;
-    for (const Camera& camera : make_cameras(CameraSet::flight, mesh)) {
+    for (const Camera& camera : make_cameras(CameraSet::flight, seen_triangle)) {
         const double radii = length(to_double(camera.origin) - sphere.centre) / sphere.radius;
         nearest = std::min(nearest, radii);
         farthest = std::max(farthest, radii);
@@ -58,7 +58,7 @@ TEST(Camera, distances_are_those_of_the_set)
 TEST(Camera, frames_are_orthonormal_and_look_at_the_centre)
 {
     for (const auto set : {CameraSet::smoke, CameraSet::orbit, CameraSet::flight}) {
-        for (const Camera& camera : make_cameras(set, mesh)) {
+        for (const Camera& camera : make_cameras(set, seen_triangle)) {
             EXPECT_NEAR(dot(camera.forward, camera.right), 0, 1e-12);
             EXPECT_NEAR(dot(camera.forward, camera.up), 0, 1e-12);
             EXPECT_NEAR(length(camera.up), 1, 1e-12);
@@ -71,7 +71,7 @@ TEST(Camera, frames_are_orthonormal_and_look_at_the_centre)
 
 TEST(Camera, pixels_span_60_degrees_through_their_centres)
 {
-    const Camera camera = make_cameras(CameraSet::smoke, mesh).front();
+    const Camera camera = make_cameras(CameraSet::smoke, seen_triangle).front();
     const View view = make_view(camera, 1024, 512);
     const auto direction = [&](double x, double y) {
         return to_double(view.corner) + to_double(view.step_x) * x + to_double(view.step_y) * y;

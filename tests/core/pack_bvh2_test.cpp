@@ -26,7 +26,7 @@ struct Bvh2Node {
     Box box[2];
     std::uint32_t child[2];
 };
-Bvh2Node read_node(const PackedScene& packed, std::uint32_t node)
+Bvh2Node read_bvh2_node(const PackedScene& packed, std::uint32_t node)
 {
     const Quad* quads = &packed.nodes[std::size_t{node} * BVH2_NODE_QUADS];
     const auto& [a, b, z, child] = std::array{quads[0], quads[1], quads[2], quads[3]};
@@ -53,7 +53,7 @@ private:
     Box read(std::uint32_t index, std::uint32_t waiting)
     {
         node_order.push_back(index);
-        const Bvh2Node node = read_node(packed_, index);
+        const Bvh2Node node = read_bvh2_node(packed_, index);
         max_waiting = std::max(max_waiting, waiting + 1);
         const int larger = half_area(node.box[1]) > half_area(node.box[0]) ? 1 : 0;
         for (const int side : {larger, 1 - larger})
@@ -115,7 +115,7 @@ TEST(PackBvh2, boxes_are_the_trees_and_the_margin)
 {
     const TriangleMesh mesh = needles(50);
     const Bvh bvh = build_bvh(mesh).bvh;
-    const Bvh2Node root = read_node(pack_bvh(mesh, bvh, Layout::bvh2), 0);
+    const Bvh2Node root = read_bvh2_node(pack_bvh(mesh, bvh, Layout::bvh2), 0);
     for (const std::size_t i : {0u, 1u})
         EXPECT_EQ(root.box[i], grown(bvh.nodes[bvh.nodes[0].child[i]].box, BOX_MARGIN));
 }
@@ -124,7 +124,7 @@ TEST(PackBvh2, one_leaf_has_an_empty_sibling_of_the_same_box)
 {
     const TriangleMesh mesh = identical_triangles(3);
     const PackedScene packed = pack_bvh(mesh, {{{triangle_box(mesh, 0), {}, 0, 3}}, {2, 0, 1}}, Layout::bvh2);
-    const Bvh2Node root = read_node(packed, 0);
+    const Bvh2Node root = read_bvh2_node(packed, 0);
     EXPECT_EQ(packed.nodes.size(), BVH2_NODE_QUADS);
     EXPECT_EQ(root.child[0], BVH2_LEAF | 3u);
     EXPECT_EQ(root.child[1], BVH2_LEAF);

@@ -27,7 +27,7 @@ struct Bvh4Node {
     }
 };
 
-Bvh4Node read_node(const PackedScene& packed, std::uint32_t node)
+Bvh4Node read_bvh4_node(const PackedScene& packed, std::uint32_t node)
 {
     const auto words = [&](std::size_t quad) {
         const Quad& q = packed.nodes[std::size_t{node} * BVH4_NODE_QUADS + quad];
@@ -62,7 +62,7 @@ private:
     Box read(std::uint32_t index, std::uint32_t waiting)
     {
         node_order.push_back(index);
-        const Bvh4Node node = read_node(packed_, index);
+        const Bvh4Node node = read_bvh4_node(packed_, index);
         const std::uint32_t count = node.children();
         children += count;
         waiting += count - 1;
@@ -148,7 +148,7 @@ TEST(PackBvh4, one_triangle_is_one_child_of_the_root)
     const PackedScene packed = make_bvh_scene(identical_triangles(1), Layout::bvh4);
     EXPECT_EQ(packed.nodes.size(), BVH4_NODE_QUADS);
     EXPECT_EQ(packed.stack_entries, 1u);
-    EXPECT_EQ(read_node(packed, 0).child, (std::array{BVH4_LEAF | 1u, BVH4_LEAF, BVH4_LEAF, BVH4_LEAF}));
+    EXPECT_EQ(read_bvh4_node(packed, 0).child, (std::array{BVH4_LEAF | 1u, BVH4_LEAF, BVH4_LEAF, BVH4_LEAF}));
 }
 
 // Two parts of a triangle that come into one leaf are one triangle there.

@@ -1,3 +1,4 @@
+#include "tests/house/checkout.h"
 #include "tests/house/citations.h"
 #include "tests/support/temporary_folder.h"
 
@@ -11,20 +12,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path root = TETRACE_ROOT;
-
 const std::vector<Text>& texts()
 {
-    static const std::vector<Text> texts = read_texts(root);
+    static const std::vector<Text> texts = read_texts(checkout);
     return texts;
-}
-
-std::string joined(const std::vector<std::string>& lines)
-{
-    std::string text;
-    for (const std::string& line : lines)
-        text += line + "\n";
-    return text;
 }
 
 // Written so that this file cites nothing.
@@ -57,7 +48,7 @@ TEST(Citations, name_tests_that_exist)
 
 TEST(Citations, lead_from_pages_to_files_that_exist)
 {
-    EXPECT_EQ(joined(broken_links(root, texts())), "");
+    EXPECT_EQ(joined(broken_links(checkout, texts())), "");
 }
 
 TEST(Citations, of_missing_pages_and_claims_are_found)

@@ -1,3 +1,4 @@
+#include "tests/house/checkout.h"
 #include "tests/house/house.h"
 #include "tests/support/temporary_folder.h"
 
@@ -14,26 +15,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path root = TETRACE_ROOT;
-
 const House& house()
 {
-    static const House house(root / "tests/house/arrows.txt");
+    static const House house(checkout / "tests/house/arrows.txt");
     return house;
 }
 
 const Sources& sources()
 {
-    static const Sources sources = read_sources(root);
+    static const Sources sources = read_sources(checkout);
     return sources;
-}
-
-std::string joined(const std::vector<std::string>& lines)
-{
-    std::string text;
-    for (const std::string& line : lines)
-        text += line + "\n";
-    return text;
 }
 
 std::string first_line(const fs::path& file)
@@ -62,7 +53,7 @@ std::string sentence_of(const fs::path& folder)
 {
     const std::string of_target = first_line(folder / "CMakeLists.txt");
     if (of_target.starts_with("# ")) return of_target;
-    for (fs::path around = folder.parent_path(); around != root; around = around.parent_path())
+    for (fs::path around = folder.parent_path(); around != checkout; around = around.parent_path())
         if (std::string listed = listed_sentence(around / "CMakeLists.txt", fs::relative(folder, around));
             !listed.empty())
             return listed;
@@ -107,7 +98,7 @@ TEST(House, says_of_each_folder_what_belongs_there)
 {
     for (const auto& [folder, files] : sources().files) {
         if (folder.starts_with("tests/")) continue;
-        EXPECT_NE(sentence_of(root / folder), "") << folder;
+        EXPECT_NE(sentence_of(checkout / folder), "") << folder;
     }
 }
 

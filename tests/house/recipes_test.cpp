@@ -1,4 +1,5 @@
 // The recipes of docs/ARCHITECTURE.md: how many files one changes to add something.
+#include "tests/house/checkout.h"
 #include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
@@ -7,8 +8,6 @@
 using namespace tetrace::test;
 
 namespace {
-
-const std::filesystem::path root = TETRACE_ROOT;
 
 struct Recipe {
     std::string what; ///< "A method"
@@ -21,7 +20,7 @@ std::vector<Recipe> read_recipes()
     static const std::regex heading(R"(\*\*(An? [a-z ]+): (\d+) files?(?:, and (?:(a) test|(\d+) (?:of )?tests))?.*)"),
         item(R"(\d+\. `([^`]+)`.*)");
     std::vector<Recipe> recipes;
-    std::istringstream lines(read_text(root / "docs/ARCHITECTURE.md"));
+    std::istringstream lines(read_text(checkout / "docs/ARCHITECTURE.md"));
     std::smatch match;
     for (std::string line; std::getline(lines, line);)
         if (line.starts_with("#"))
@@ -64,8 +63,8 @@ TEST(Recipes, are_as_many_files_as_they_say_and_each_names_what_was_added_before
         EXPECT_EQ(recipe.listed.size() - tests, recipe.files);
         EXPECT_EQ(tests, recipe.tests);
         for (const std::string& file : recipe.listed) {
-            ASSERT_TRUE(std::filesystem::is_regular_file(root / file)) << file;
-            const std::string text = read_text(root / file);
+            ASSERT_TRUE(std::filesystem::is_regular_file(checkout / file)) << file;
+            const std::string text = read_text(checkout / file);
             for (const std::string& example : examples.at(recipe.what))
                 EXPECT_TRUE(std::regex_search(text, std::regex("(^|[^a-z])" + example, std::regex::icase)))
                     << file << " lacks " << example;

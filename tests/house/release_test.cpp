@@ -1,4 +1,5 @@
 // What a release says of itself, and what scripts/release makes of the parts.
+#include "tests/house/checkout.h"
 #include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
@@ -8,11 +9,9 @@ using namespace tetrace::test;
 
 namespace {
 
-const std::filesystem::path root = TETRACE_ROOT;
-
 std::string version()
 {
-    const std::string text = read_text(root / "CMakeLists.txt");
+    const std::string text = read_text(checkout / "CMakeLists.txt");
     std::smatch match;
     EXPECT_TRUE(std::regex_search(text, match, std::regex("project\\(tetrace VERSION ([0-9.]+)")));
     return match[1];
@@ -22,9 +21,9 @@ std::string version()
 
 TEST(Release, is_of_one_version_in_every_text)
 {
-    EXPECT_TRUE(contains(read_text(root / "CITATION.cff"), "\nversion: " + version() + "\n"));
-    EXPECT_TRUE(read_text(root / "packages/changelog").starts_with("tetrace (" + version() + ")"));
-    const std::string changes = read_text(root / "CHANGELOG.md");
+    EXPECT_TRUE(contains(read_text(checkout / "CITATION.cff"), "\nversion: " + version() + "\n"));
+    EXPECT_TRUE(read_text(checkout / "packages/changelog").starts_with("tetrace (" + version() + ")"));
+    const std::string changes = read_text(checkout / "CHANGELOG.md");
     EXPECT_EQ(changes.find("\n## "), changes.find("\n## " + version())) << "the newest comes first";
 }
 
@@ -40,7 +39,7 @@ TEST(Release, has_a_checksum_of_each_file_and_refuses_missing_parts)
     const auto run = [&](const std::string& command) {
         return std::system(("cd '" + folder.path().string() + "' && " + command + " > log 2>&1").c_str());
     };
-    const std::string release = "'" + (root / "scripts/release").string() + "' build small out";
+    const std::string release = "'" + (checkout / "scripts/release").string() + "' build small out";
     for (const std::string part :
          {"bundle/run-all", "tetrace_V_amd64.deb", "tetrace-builder_V_amd64.deb", "libtetrace-dev_V_amd64.deb"})
         write_file(folder / ("build/" + std::regex_replace(part, std::regex("V"), version())), part);

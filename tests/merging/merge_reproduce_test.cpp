@@ -8,7 +8,8 @@ using namespace tetrace::test;
 
 namespace {
 
-const std::vector<const char*> answers = {"name", "status", "reason", "counts", "visits", "verification", "views_hash"};
+const std::vector<const char*> view_answers = {"name",   "status",       "reason",    "counts",
+                                               "visits", "verification", "views_hash"};
 const std::vector<const char*> search_answers = {"name", "status", "verification", "batches_hash"};
 
 class MergeReproduce : public MergeTest {
@@ -25,18 +26,18 @@ protected:
     }
 };
 
-const std::string scene = " --backend openmp --scene cubes --resolution 6 --threads 1";
+const std::string one_backend = " --backend openmp --one_backend cubes --resolution 6 --threads 1";
 
 } // namespace
 
 TEST_F(MergeReproduce, table4_by_four_shards_is_that_of_the_whole_run_in_every_count_and_hash)
 {
-    const std::string command = "reproduce table4 --layout tet80 --size 24 --views 0-1281:60" + scene;
+    const std::string command = "reproduce table4 --layout tet80 --size 24 --views 0-1281:60" + one_backend;
     ASSERT_EQ(run(command + " --out whole.json").code, 0);
     const Ended ended = run("merge " + shards(command, 4) + "--out all.json");
     ASSERT_EQ(ended.code, 0) << ended.errors;
     const Json whole = section("whole.json"), all = section("all.json");
-    EXPECT_EQ(keys_of(all["rows"], answers), keys_of(whole["rows"], answers));
+    EXPECT_EQ(keys_of(all["rows"], view_answers), keys_of(whole["rows"], view_answers));
     EXPECT_EQ(counted(all), counted(whole));
     ASSERT_FALSE(counted(all)["table4"].is_null());
     EXPECT_EQ(all["scenes"][0]["views"], whole["scenes"][0]["views"]);
@@ -60,7 +61,7 @@ TEST_F(MergeReproduce, rows_of_several_machines_keep_counts_and_lose_rates)
 {
     const std::string command = "reproduce table3,table6 --layout tet80,bvh2 --method maria --size 16 --samples 3 "
                                 "--sample-time 0.001 --views 0-1281:200" +
-                                scene;
+                                one_backend;
     ASSERT_EQ(run(command + " --out whole.json").code, 0);
     const std::string files = shards(command, 2);
     ASSERT_EQ(run("merge " + files + "--out one.json").code, 0);
@@ -70,7 +71,7 @@ TEST_F(MergeReproduce, rows_of_several_machines_keep_counts_and_lose_rates)
     const Ended ended = run("merge " + files + "--out all.json");
     ASSERT_EQ(ended.code, 0) << ended.errors;
     const Json all = section("all.json");
-    EXPECT_EQ(keys_of(all["rows"], answers), keys_of(section("whole.json")["rows"], answers));
+    EXPECT_EQ(keys_of(all["rows"], view_answers), keys_of(section("whole.json")["rows"], view_answers));
     EXPECT_FALSE(all["rows"][0].contains("rates"));
     EXPECT_FALSE(all["rows"][0]["times"].contains("passes")) << "of samples that it has not";
     ASSERT_EQ(all["merged"]["machines"].size(), 2u);
@@ -81,17 +82,18 @@ TEST_F(MergeReproduce, a_scene_with_fewer_views_than_shards_is_in_some_of_them)
 {
     const std::string command = "reproduce table4,table5 --layout tet80 --method maria --size 16 --views 0,700 "
                                 "--searches 40x8 --samples 3 --sample-time 0" +
-                                scene;
+                                one_backend;
     ASSERT_EQ(run(command + " --out whole.json").code, 0);
     const Ended ended = run("merge " + shards(command, 3) + "--out all.json");
     ASSERT_EQ(ended.code, 0) << ended.errors;
     EXPECT_TRUE(section("3.json")["scenes"].empty());
-    EXPECT_EQ(keys_of(section("all.json")["rows"], answers), keys_of(section("whole.json")["rows"], answers));
+    EXPECT_EQ(keys_of(section("all.json")["rows"], view_answers), keys_of(section("whole.json")["rows"], view_answers));
 }
 
 TEST_F(MergeReproduce, a_shard_without_anything_to_do_is_refused)
 {
-    const Ended ended = run("reproduce table4 --layout tet80 --size 16 --views 0 --shard 2/2 --out 2.json" + scene);
+    const Ended ended =
+        run("reproduce table4 --layout tet80 --size 16 --views 0 --shard 2/2 --out 2.json" + one_backend);
     EXPECT_EQ(ended.code, 2);
     EXPECT_TRUE(contains(ended.errors, "this shard would be empty")) << ended.errors;
 }
@@ -111,5 +113,5 @@ TEST_F(ResumedShard, a_shard_that_was_killed_is_resumed_and_merges)
                                           "all.json > merged",
                                           folder_.path().string(), TETRACE_PROGRAM);
     ASSERT_EQ(std::system(merge.c_str()), 0);
-    EXPECT_EQ(keys_of(result("all.json")["rows"], answers), keys_of(result("whole.json")["rows"], answers));
+    EXPECT_EQ(keys_of(result("all.json")["rows"], view_answers), keys_of(result("whole.json")["rows"], view_answers));
 }

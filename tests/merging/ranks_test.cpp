@@ -11,7 +11,7 @@ using namespace tetrace::test;
 
 namespace {
 
-const std::vector<const char*> answers = {"name", "status", "counts", "verification", "views_hash"};
+const std::vector<const char*> counted_answers = {"name", "status", "counts", "verification", "views_hash"};
 const std::string command = "reproduce table4 --method maria,ms06 --layout tet80 --size 64 --views 0-1281:20 "
                             "--backend openmp --scene cubes --resolution 6 --threads 1";
 
@@ -81,7 +81,8 @@ TEST_F(Ranks, share_a_run_and_rank_0_merges_it)
 {
     ASSERT_EQ(run(command + " --out whole.json").code, 0);
     EXPECT_EQ(run_all(4, command + " --out all.json"), std::vector<int>(4, 0)) << file("rank0.err");
-    EXPECT_EQ(keys_of(section("all.json")["rows"], answers), keys_of(section("whole.json")["rows"], answers));
+    EXPECT_EQ(keys_of(section("all.json")["rows"], counted_answers),
+              keys_of(section("whole.json")["rows"], counted_answers));
     EXPECT_EQ(section("all.json")["merged"]["shards"], 4);
     EXPECT_TRUE(contains(file("rank0.out"), "merged of 4 shards"));
     EXPECT_EQ(file("rank1.out"), "") << "one rank prints for all";
@@ -142,7 +143,8 @@ TEST_F(Ranks, a_dead_rank_is_named_and_can_be_run_again)
     EXPECT_TRUE(contains(told, "tetrace merge all.shard-1-of-2.json all.shard-2-of-2.json --out all.json")) << told;
     ASSERT_EQ(run(command.substr(0, command.find(" --threads")) + tail).code, 0);
     ASSERT_EQ(run("merge all.shard-1-of-2.json all.shard-2-of-2.json --out all.json").code, 0);
-    EXPECT_EQ(keys_of(section("all.json")["rows"], answers), keys_of(section("whole.json")["rows"], answers));
+    EXPECT_EQ(keys_of(section("all.json")["rows"], counted_answers),
+              keys_of(section("whole.json")["rows"], counted_answers));
 }
 
 TEST_F(Ranks, a_launch_can_be_repeated_as_a_whole_and_goes_on)

@@ -12,7 +12,7 @@ using namespace tetrace::test;
 namespace {
 
 /// A result of bench on a machine, some days after the first of January.
-json result_of(const std::string& label, int day, double mrays_per_s = 4)
+json result_of_day(const std::string& label, int day, double mrays_per_s = 4)
 {
     json result = bench_json();
     json& section = result["tetrace"];
@@ -27,14 +27,6 @@ json result_of(const std::string& label, int day, double mrays_per_s = 4)
             row["times"]["samples_s"].push_back((1 + 0.0001 * i) * 4 / mrays_per_s);
     }
     return result;
-}
-
-std::size_t occurrences(const std::string& text, const std::string& part)
-{
-    std::size_t count = 0;
-    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size()))
-        ++count;
-    return count;
 }
 
 class CampaignPage : public testing::Test {
@@ -59,7 +51,7 @@ TEST_F(CampaignPage, has_an_index_of_a_hundred_results_of_ten_hosts)
 {
     std::vector<json> results;
     for (int i = 0; i < 100; ++i)
-        results.push_back(result_of(fmt::format("host {}", i % 10), i / 10));
+        results.push_back(result_of_day(fmt::format("host {}", i % 10), i / 10));
     const std::string page = page_of(results);
     const std::string index = section_of(page, "index");
     EXPECT_EQ(occurrences(index, "<tr>"), 1u + 30 + 1 + 100)
@@ -82,7 +74,7 @@ TEST_F(CampaignPage, has_an_index_of_a_hundred_results_of_ten_hosts)
 // A BVH's row is the same work through other tets, whose rows have a table of their own.
 TEST_F(CampaignPage, has_a_bvhs_row_in_the_table_of_each_scene_that_it_was_timed_on)
 {
-    std::vector<json> results = {result_of("one", 0), result_of("one", 1)};
+    std::vector<json> results = {result_of_day("one", 0), result_of_day("one", 1)};
     for (json& result : results) {
         json& section = result["tetrace"];
         section["scenes"][0]["source_hash"] = "00000000000000aa";
@@ -103,7 +95,7 @@ TEST_F(CampaignPage, grows_no_faster_than_its_results)
     const auto size_of = [&](int results) {
         std::vector<json> all;
         for (int i = 0; i < results; ++i)
-            all.push_back(result_of(fmt::format("host {}", i % 5), i / 5));
+            all.push_back(result_of_day(fmt::format("host {}", i % 5), i / 5));
         return page_of(all).size();
     };
     const std::size_t few = size_of(50);
@@ -112,8 +104,9 @@ TEST_F(CampaignPage, grows_no_faster_than_its_results)
 
 TEST_F(CampaignPage, shows_the_newest_rate_of_each_machine_next_to_the_first)
 {
-    const std::string machines = section_of(
-        page_of({result_of("one", 3, 8), result_of("one", 1, 5), result_of("two", 2, 12)}), "compared-machines");
+    const std::string machines =
+        section_of(page_of({result_of_day("one", 3, 8), result_of_day("one", 1, 5), result_of_day("two", 2, 12)}),
+                   "compared-machines");
     EXPECT_EQ(occurrences(machines, ">8.00<small>noisy</small></td>"), 3u) << machines;
     EXPECT_EQ(occurrences(machines, ">12.0<small>noisy</small><small>× 1.50</small>"), 3u)
         << "processor, GPU, emulated";
@@ -124,22 +117,22 @@ TEST_F(CampaignPage, shows_the_newest_rate_of_each_machine_next_to_the_first)
 
 TEST_F(CampaignPage, compares_only_rows_of_the_same_work)
 {
-    json other_hits = result_of("two", 1);
+    json other_hits = result_of_day("two", 1);
     other_hits["tetrace"]["rows"][2]["hit_hash"] = "0000000000000011";
-    json other_scene = result_of("three", 1);
+    json other_scene = result_of_day("three", 1);
     other_scene["tetrace"]["scenes"][0]["hash"] = "fedcba9876543210";
     const std::string machines =
-        section_of(page_of({result_of("one", 1), other_hits, other_scene}), "compared-machines");
+        section_of(page_of({result_of_day("one", 1), other_hits, other_scene}), "compared-machines");
     EXPECT_TRUE(contains(machines, "one, 2 threads"));
     EXPECT_TRUE(contains(machines, "two, 2 threads"));
     EXPECT_FALSE(contains(machines, "three")) << "no machine traced its scene";
     EXPECT_EQ(occurrences(machines, "<table>"), 2u) << "emulated devices gave other answers";
-    EXPECT_TRUE(contains(section_of(page_of({result_of("one", 1)}), "compared-machines"), "no section"));
+    EXPECT_TRUE(contains(section_of(page_of({result_of_day("one", 1)}), "compared-machines"), "no section"));
 }
 
 TEST_F(CampaignPage, keeps_segments_apart_from_what_is_traced)
 {
-    json result = result_of("a", 0);
+    json result = result_of_day("a", 0);
     json& rows = result["tetrace"]["rows"];
     json other = rows[0];
     other.update({{"name", "segments/openmp"}, {"task", "segments"}, {"threads", 1}});
@@ -161,15 +154,16 @@ TEST_F(CampaignPage, keeps_segments_apart_from_what_is_traced)
 
 TEST_F(CampaignPage, says_how_much_work_has_no_counterpart)
 {
-    json more = result_of("two", 1);
+    json more = result_of_day("two", 1);
     more["tetrace"]["rows"].push_back(more["tetrace"]["rows"][0]);
     more["tetrace"]["rows"].back()["name"] = "row/openmp/more";
-    EXPECT_TRUE(contains(section_of(page_of({result_of("one", 1), more}), "compared-machines"), "1 work is not shown"));
+    EXPECT_TRUE(
+        contains(section_of(page_of({result_of_day("one", 1), more}), "compared-machines"), "1 work is not shown"));
 }
 
 TEST_F(CampaignPage, keeps_one_gpu_in_two_hosts_apart)
 {
-    const Campaign campaign = campaign_of({result_of("one", 1), result_of("two", 1)});
+    const Campaign campaign = campaign_of({result_of_day("one", 1), result_of_day("two", 1)});
     std::set<std::string> names;
     for (const CampaignMachine& machine : campaign.machines)
         if (machine.kind == DeviceKind::gpu) names.insert(machine.name);
@@ -199,26 +193,27 @@ TEST_F(CampaignPage, distinguishes_hosts_by_label_or_processor_or_else_by_folder
 
 TEST_F(CampaignPage, distinguishes_runs_with_other_numbers_of_threads)
 {
-    json single = result_of("one", 1);
+    json single = result_of_day("one", 1);
     single["tetrace"]["threads"] = 1;
-    const std::string page = page_of({result_of("one", 2), single});
+    const std::string page = page_of({result_of_day("one", 2), single});
     EXPECT_TRUE(contains(section_of(page, "compared-machines"), "one, 1 thread"));
     EXPECT_TRUE(contains(section_of(page, "compared-machines"), "one, 2 threads"));
 }
 
 TEST_F(CampaignPage, draws_each_machine_over_its_dates_with_a_verdict_of_the_last_step)
 {
-    const std::string page = page_of({result_of("one", 3, 4.1), result_of("one", 1, 4), result_of("one", 2, 5)});
+    const std::string page =
+        page_of({result_of_day("one", 3, 4.1), result_of_day("one", 1, 4), result_of_day("one", 2, 5)});
     const std::string trends = section_of(page, "trends");
     EXPECT_EQ(occurrences(trends, "class=\"line\""), 3u) << "a row on the processor, on the GPU, and an emulated one";
     EXPECT_EQ(occurrences(trends, ">SLOWER<"), 3u) << "from 5 to 4.1";
     EXPECT_EQ(occurrences(trends, ">SAME<"), 3u) << "from 4 to 4.1";
     EXPECT_TRUE(contains(trends, "0.820"));
-    EXPECT_TRUE(contains(section_of(page_of({result_of("one", 1)}), "trends"), "no section"));
+    EXPECT_TRUE(contains(section_of(page_of({result_of_day("one", 1)}), "trends"), "no section"));
 }
 
 /// The calibration during the samples of each of its rows, over its fastest.
-static json with_pulse(json result, double ratio)
+static json with_pulse_of_rows(json result, double ratio)
 {
     for (json& row : result["tetrace"]["rows"])
         if (row.contains("times")) row["times"]["pulse"] = ratio;
@@ -227,12 +222,12 @@ static json with_pulse(json result, double ratio)
 
 TEST_F(CampaignPage, calls_rates_of_a_machine_that_changed_noisy_as_compare_does)
 {
-    const std::string trends =
-        section_of(page_of({result_of("one", 1, 4), with_pulse(result_of("one", 2, 2), 1.6)}), "trends");
+    const std::string trends = section_of(
+        page_of({result_of_day("one", 1, 4), with_pulse_of_rows(result_of_day("one", 2, 2), 1.6)}), "trends");
     EXPECT_EQ(occurrences(trends, ">NOISY<"), 6u) << "three rows, the last step and in all";
     EXPECT_EQ(occurrences(trends, ">SLOWER<"), 0u);
     EXPECT_TRUE(contains(trends, "in the second calibration during its samples took 1.60 times its fastest")) << trends;
-    json before = result_of("one", 1, 4), after = result_of("one", 2, 2);
+    json before = result_of_day("one", 1, 4), after = result_of_day("one", 2, 2);
     const auto host = [](double seconds) {
         return json{{{"of", "host"}, {"fastest_s", seconds}, {"ratio", 1}, {"readings", {{0, seconds}}}}};
     };
@@ -246,11 +241,13 @@ TEST_F(CampaignPage, calls_rates_of_a_machine_that_changed_noisy_as_compare_does
 TEST_F(CampaignPage, leaves_noisy_rates_out_of_the_means_of_machines)
 {
     const std::string noisy =
-        section_of(page_of({result_of("one", 1, 4), with_pulse(result_of("two", 2, 2), 1.6)}), "compared-machines");
+        section_of(page_of({result_of_day("one", 1, 4), with_pulse_of_rows(result_of_day("two", 2, 2), 1.6)}),
+                   "compared-machines");
     EXPECT_EQ(occurrences(noisy, ">NOISY<"), 3u);
     EXPECT_FALSE(contains(noisy, "Means of the rates")) << noisy;
-    EXPECT_TRUE(contains(section_of(page_of({result_of("one", 1, 4), result_of("two", 2, 2)}), "compared-machines"),
-                         "Means of the rates"));
+    EXPECT_TRUE(
+        contains(section_of(page_of({result_of_day("one", 1, 4), result_of_day("two", 2, 2)}), "compared-machines"),
+                 "Means of the rates"));
 }
 
 TEST_F(CampaignPage, compares_exit_searches_too)
@@ -274,9 +271,9 @@ TEST_F(CampaignPage, leaves_out_what_is_no_result_with_the_reason)
 {
     write_file(folder_ / "0/schema.json", R"({"$schema": "a schema"})");
     write_file(folder_ / "0/cut.json", R"({"tetrace": {)");
-    json bad = result_of("bad", 1);
+    json bad = result_of_day("bad", 1);
     bad["tetrace"]["rows"][0]["rates"]["mrays_per_s"] = 0;
-    const std::string index = section_of(page_of({result_of("one", 1), bad}), "index");
+    const std::string index = section_of(page_of({result_of_day("one", 1), bad}), "index");
     EXPECT_TRUE(contains(index, "schema.json&apos;: section"));
     EXPECT_TRUE(contains(index, "cut.json"));
     EXPECT_TRUE(contains(index, "rows[0].rates.mrays_per_s"));

@@ -14,7 +14,7 @@ struct Measured {
     bool noisy = false;
 };
 
-json result_of(const std::string& label, const std::vector<Measured>& rows)
+json result_of_rows(const std::string& label, const std::vector<Measured>& rows)
 {
     json result = bench_json();
     json& section = result["tetrace"];
@@ -50,12 +50,12 @@ protected:
 /// Two GPUs and an emulated one: vulkan runs on both GPUs, cuda on one.
 std::vector<json> three_platforms()
 {
-    return {result_of("one", {{"cuda", "gpu", "tet80", 100},
-                              {"vulkan", "gpu", "tet80", 80},
-                              {"vulkan", "gpu", "tet80", 60},
-                              {"vulkan", "emulated", "tet80", 1},
-                              {"opencl", "gpu", "tet80", 500, "flawed"}}),
-            result_of("two", {{"vulkan", "gpu", "tet80", 30}, {"vulkan", "gpu", "tet96", 40, "ok", true}})};
+    return {result_of_rows("one", {{"cuda", "gpu", "tet80", 100},
+                                   {"vulkan", "gpu", "tet80", 80},
+                                   {"vulkan", "gpu", "tet80", 60},
+                                   {"vulkan", "emulated", "tet80", 1},
+                                   {"opencl", "gpu", "tet80", 500, "flawed"}}),
+            result_of_rows("two", {{"vulkan", "gpu", "tet80", 30}, {"vulkan", "gpu", "tet96", 40, "ok", true}})};
 }
 
 } // namespace

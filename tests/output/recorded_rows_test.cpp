@@ -36,7 +36,7 @@ nlohmann::json stored_fields(const nlohmann::json& row, const nlohmann::json& of
 } // namespace
 
 /// Older results wrote these in another form.
-class RecordedRows : public testing::Test {
+class StoredRows : public testing::Test {
 protected:
     static void drop_older_forms(nlohmann::json& fields)
     {
@@ -47,7 +47,7 @@ protected:
     }
 };
 
-TEST_F(RecordedRows, come_back_from_every_stored_result_as_they_were_written)
+TEST_F(StoredRows, come_back_from_every_stored_result_as_they_were_written)
 {
     std::size_t compared = 0;
     for (const auto& path : stored_results()) {

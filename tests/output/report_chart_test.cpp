@@ -3,6 +3,7 @@
 #include "bench/report/charts/line_chart.h"
 #include "bench/report/charts/roofline_chart.h"
 #include "bench/report/html/svg.h"
+#include "tests/output/report_fixture.h"
 #include "tests/support/temporary_folder.h"
 
 #include <algorithm>
@@ -19,14 +20,6 @@ using namespace tetrace::test;
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-std::size_t occurrences(const std::string& text, const std::string& part)
-{
-    std::size_t count = 0;
-    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size()))
-        ++count;
-    return count;
-}
 
 /// The value of an attribute in each element of a class.
 std::vector<double> attribute_of(const std::string& drawing, const std::string& css_class, const std::string& name)

@@ -14,6 +14,15 @@
 
 namespace tetrace::test {
 
+/// How often a text has a part.
+[[nodiscard]] inline std::size_t occurrences(const std::string& text, const std::string& part)
+{
+    std::size_t count = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size()))
+        ++count;
+    return count;
+}
+
 /// The rows that have an element of this class.
 [[nodiscard]] inline std::multiset<std::string> rows_of(const std::string& page, const std::string& css_class)
 {

@@ -1,6 +1,7 @@
 // Series are distinguished by colour, shape and dash; points that share a path share a definition of their mark.
 #include "bench/report/charts/line_chart.h"
 #include "bench/report/html/svg.h"
+#include "tests/output/report_fixture.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -9,16 +10,9 @@
 #include <string>
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
-
-std::size_t occurrences(const std::string& text, const std::string& part)
-{
-    std::size_t count = 0;
-    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size()))
-        ++count;
-    return count;
-}
 
 } // namespace
 

@@ -33,7 +33,7 @@ Hit hit_after(std::uint32_t steps)
     return {0, 0, 1.0f, 0.0f, 0.0f, steps};
 }
 
-bool contains(const Pixmap& pixmap, Colour colour)
+bool has_pixel(const Pixmap& pixmap, Colour colour)
 {
     return std::find(pixmap.pixels.begin(), pixmap.pixels.end(), colour) != pixmap.pixels.end();
 }
@@ -129,10 +129,10 @@ TEST(DrawSteps, has_a_bar_from_end_to_end_below_the_picture)
     std::vector<Hit> hits(600 * 4, hit_after(10));
     Pixmap footer = draw_steps(hits, 600, 4, "cubes");
     footer.pixels.erase(footer.pixels.begin(), footer.pixels.begin() + footer.width * 4);
-    EXPECT_TRUE(contains(footer, false_colour(0.0)));
-    EXPECT_TRUE(contains(footer, false_colour(1.0)));
-    EXPECT_TRUE(contains(footer, from_srgb(0xE8EAED))) << "no lettering";
-    EXPECT_FALSE(contains(footer, lost_colour()));
+    EXPECT_TRUE(has_pixel(footer, false_colour(0.0)));
+    EXPECT_TRUE(has_pixel(footer, false_colour(1.0)));
+    EXPECT_TRUE(has_pixel(footer, from_srgb(0xE8EAED))) << "no lettering";
+    EXPECT_FALSE(has_pixel(footer, lost_colour()));
 }
 
 TEST(DrawSteps, pictures_side_by_side_have_one_scale)

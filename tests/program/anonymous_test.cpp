@@ -30,7 +30,7 @@ protected:
     }
 };
 
-constexpr const char* tiny = " --scene cubes --resolution 3 --size 8 --backend openmp,embree ";
+constexpr const char* tiny_rows = " --scene cubes --resolution 3 --size 8 --backend openmp,embree ";
 
 } // namespace
 
@@ -102,7 +102,7 @@ TEST_F(AnonymousProgram, results_hold_neither_the_hosts_name_nor_a_folder)
     const std::string scenes = fmt::format("--scene {}/private/broken.tet", folder);
     for (const std::string& arguments :
          {std::string("bench --samples 3 --sample-time 0"), std::string("check --junit {0}/check.xml")}) {
-        const std::string verb = fmt::format(fmt::runtime(arguments), folder) + tiny + scenes;
+        const std::string verb = fmt::format(fmt::runtime(arguments), folder) + tiny_rows + scenes;
         const Ended named = run_on_host("secrethost", verb + " --out named.json");
         EXPECT_TRUE(contains(file("named.json"), "private/broken.tet")) << "else there is nothing to leave out";
         EXPECT_NE(named.out.find("private/broken.tet"), std::string::npos);
@@ -119,19 +119,20 @@ TEST_F(AnonymousProgram, results_hold_neither_the_hosts_name_nor_a_folder)
 TEST_F(AnonymousProgram, google_benchmark_names_the_host_unless_anonymous)
 {
     if (!can_name_a_host()) GTEST_SKIP() << "this system lets nobody name a host: 'unshare -u' is not permitted";
-    ASSERT_EQ(
-        run_on_host("secrethost", std::string("bench --samples 3 --sample-time 0 --benchmark_out=named.json ") + tiny)
-            .code,
-        0);
+    ASSERT_EQ(run_on_host("secrethost",
+                          std::string("bench --samples 3 --sample-time 0 --benchmark_out=named.json ") + tiny_rows)
+                  .code,
+              0);
     EXPECT_TRUE(contains(file("named.json"), "secrethost")) << "so the other test can fail";
 }
 
 TEST_F(AnonymousProgram, does_not_go_with_google_benchmarks_own_json)
 {
     for (const char* const flag : {"--benchmark_format=json", "--benchmark_out=gb.json"}) {
-        const Ended ended = run(std::string("bench --samples 3 --sample-time 0 --anonymous ") + tiny + flag);
+        const Ended ended = run(std::string("bench --samples 3 --sample-time 0 --anonymous ") + tiny_rows + flag);
         EXPECT_EQ(ended.code, 2) << flag;
         EXPECT_TRUE(contains(ended.errors, "names the host")) << ended.errors;
     }
-    EXPECT_EQ(run(std::string("bench --samples 3 --sample-time 0 --anonymous --benchmark_format=csv ") + tiny).code, 0);
+    EXPECT_EQ(
+        run(std::string("bench --samples 3 --sample-time 0 --anonymous --benchmark_format=csv ") + tiny_rows).code, 0);
 }

@@ -7,7 +7,7 @@
 
 using namespace tetrace;
 using namespace tetrace::test;
-using nlohmann::json;
+using Json = nlohmann::json;
 
 namespace {
 
@@ -18,21 +18,21 @@ protected:
         "--method maria,single --layout tet80,bvh2 --schedule tiles --views 0,1 "
         "--samples 5 --sample-time 0 ";
 
-    [[nodiscard]] json section(const char* name) const { return json::parse(file(name)).at("tetrace"); }
+    [[nodiscard]] Json section(const char* name) const { return Json::parse(file(name)).at("tetrace"); }
     [[nodiscard]] std::set<std::string> names(const char* name) const
     {
-        const json result = section(name);
+        const Json result = section(name);
         std::set<std::string> all;
-        for (const json& row : result.at("rows"))
+        for (const Json& row : result.at("rows"))
             all.insert(row.at("name"));
         return all;
     }
     /// What a result says of its rows, but for times.
-    [[nodiscard]] json answers(const char* name) const
+    [[nodiscard]] Json answers(const char* name) const
     {
-        json all = json::object();
-        const json result = section(name);
-        for (const json& row : result.at("rows"))
+        Json all = Json::object();
+        const Json result = section(name);
+        for (const Json& row : result.at("rows"))
             all[row.at("name").get<std::string>()] = {row.at("status"), row.at("counts"), row.at("verification"),
                                                       row.at("views_hash"), row.at("times").at("samples_s").size()};
         return all;
@@ -47,10 +47,10 @@ TEST_F(Axes, have_a_row_at_each_size_with_each_number_of_threads)
     ASSERT_EQ(ended.code, 0) << ended.errors;
     EXPECT_EQ(names("r.json").size(), 8u);
     EXPECT_TRUE(names("r.json").contains("cdt/maria/tet80/cubes/size:32/primary/math:exact/api:openmp/threads:1"));
-    const json result = section("r.json");
+    const Json result = section("r.json");
     EXPECT_EQ(result.at("threads"), 2);
     EXPECT_EQ(result.at("scenes").size(), 2u);
-    for (const json& row : result.at("rows")) {
+    for (const Json& row : result.at("rows")) {
         const bool is_small = row.at("scene") == "cubes/size:16";
         EXPECT_EQ(row.at("counts").at("rays"), 2 * (is_small ? 16 * 16 : 32 * 32));
         EXPECT_EQ(row.contains("threads"), row.at("name").get<std::string>().ends_with("/threads:1"));
@@ -116,7 +116,7 @@ TEST_F(Axes, of_shards_are_merged)
     EXPECT_EQ(names("m.json"), names("a.json"));
     EXPECT_TRUE(contains(merged.out, "rates by size")) << merged.out;
     EXPECT_TRUE(contains(merged.out, "rates by threads"));
-    const json result = section("m.json");
-    for (const json& row : result.at("rows"))
+    const Json result = section("m.json");
+    for (const Json& row : result.at("rows"))
         EXPECT_EQ(row.at("counts").at("rays").get<int>() % 512, 0) << "both views";
 }

@@ -11,7 +11,7 @@ namespace {
 using Json = nlohmann::json;
 
 /// `--camera-set FILE.json`.
-class OwnCameras : public ProgramTest {
+class CameraFiles : public ProgramTest {
 protected:
     void write(const char* name, const std::string& text) { write_file(folder_ / name, text); }
 
@@ -40,7 +40,7 @@ protected:
 
 } // namespace
 
-TEST_F(OwnCameras, of_the_documented_example_are_traced_and_named_in_the_result)
+TEST_F(CameraFiles, of_the_documented_example_are_traced_and_named_in_the_result)
 {
     write("example.json", example_);
     const Ended ended = trace("example.json", "--out result.json");
@@ -60,7 +60,7 @@ TEST_F(OwnCameras, of_the_documented_example_are_traced_and_named_in_the_result)
     EXPECT_EQ(trace("example.json", "--views 3").code, 2) << "it has three";
 }
 
-TEST_F(OwnCameras, with_other_numbers_are_other_work_whatever_their_name)
+TEST_F(CameraFiles, with_other_numbers_are_other_work_whatever_their_name)
 {
     write("a.cameras.json", R"({"name": "mine", "views": [{"origin": [0, 0, 2]}]})");
     write("b.cameras.json", R"({"name": "mine", "views": [{"origin": [0, 0, 2], "up": [0, 2, 0]}]})");
@@ -73,7 +73,7 @@ TEST_F(OwnCameras, with_other_numbers_are_other_work_whatever_their_name)
     EXPECT_TRUE(contains(other.errors, "1 views of mine ")) << other.errors;
 }
 
-TEST_F(OwnCameras, that_are_not_as_documented_are_refused_by_their_entry)
+TEST_F(CameraFiles, that_are_not_as_documented_are_refused_by_their_entry)
 {
     EXPECT_TRUE(contains(refused("{"), "it is not JSON"));
     EXPECT_TRUE(contains(refused("[]"), "the file: is not an object"));
@@ -97,7 +97,7 @@ TEST_F(OwnCameras, that_are_not_as_documented_are_refused_by_their_entry)
 }
 
 // The mesh decides the cameras of `frame`, so their name does not.
-TEST_F(OwnCameras, of_frame_are_pinned_by_a_hash_and_those_of_smoke_by_their_name)
+TEST_F(CameraFiles, of_frame_are_pinned_by_a_hash_and_those_of_smoke_by_their_name)
 {
     const auto scene_of = [&](const std::string& options) {
         EXPECT_EQ(bench("--layout bvh2 --backend openmp --out result.json " + options).code, 0);

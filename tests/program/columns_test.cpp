@@ -9,7 +9,7 @@ using namespace tetrace::test;
 
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
 /// A field of row_fields(), stated in one place, is in every output that has rows: JSON, CSV, the page, what `show`
 /// prints again, what `merge` puts together, and what a run that was killed ends with.
@@ -26,10 +26,10 @@ protected:
     [[nodiscard]] Keys recorded(const char* name) const
     {
         Keys keys;
-        const json result = json::parse(file(name));
-        for (const json& row : result.at("tetrace").at("rows"))
+        const Json result = Json::parse(file(name));
+        for (const Json& row : result.at("tetrace").at("rows"))
             for (const RowField& field : row_fields())
-                if (field.schema != nullptr && row.contains(json::json_pointer("/" + key_of(field))))
+                if (field.schema != nullptr && row.contains(Json::json_pointer("/" + key_of(field))))
                     keys.insert(key_of(field));
         return keys;
     }

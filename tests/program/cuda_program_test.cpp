@@ -10,13 +10,13 @@ using namespace tetrace::test;
 
 namespace {
 
-struct Ended {
+struct CudaRun {
     int code = -1;
     std::string out, errors;
 };
 
 /// Runs the program with the stub in front of any driver of this machine. failure: of the stub, empty for none.
-Ended run(const std::string& arguments, const std::string& failure = "")
+CudaRun run(const std::string& arguments, const std::string& failure = "")
 {
     const TemporaryFolder folder;
     const ScopedVariable libraries("LD_LIBRARY_PATH", TETRACE_STUB_FOLDER);
@@ -59,14 +59,14 @@ protected:
 
 TEST_F(CudaProgram, lists_the_stub_as_an_emulation)
 {
-    const Ended ended = run("devices --require cuda");
+    const CudaRun ended = run("devices --require cuda");
     EXPECT_EQ(ended.code, 0) << ended.errors;
     EXPECT_TRUE(contains(ended.out, "cuda       host emulation of CUDA, emulated"));
 }
 
 TEST_F(CudaProgram, measures_the_stub_and_openmp)
 {
-    const Ended ended = run(small_bench);
+    const CudaRun ended = run(small_bench);
     EXPECT_EQ(ended.code, 0) << ended.errors;
     EXPECT_TRUE(is_right(row_of(ended.out, "openmp")));
     EXPECT_TRUE(is_right(row_of(ended.out, "cuda")));
@@ -81,7 +81,7 @@ TEST_F(CudaProgram, each_failure_is_its_rows_status_and_openmps_row_goes_on)
                     {"lost", "error", "CUDA_ERROR_LAUNCH_FAILED"},
                     {"module", "unsupported", "CUDA_ERROR_UNSUPPORTED_PTX_VERSION"}};
     for (const auto& [failure, status, reason] : expected) {
-        const Ended ended = run(small_bench, failure);
+        const CudaRun ended = run(small_bench, failure);
         EXPECT_TRUE(contains(ended.out, std::string("/api:cuda: ") + status + ": ")) << failure;
         EXPECT_TRUE(contains(ended.out + ended.errors, reason)) << failure;
         EXPECT_TRUE(is_right(row_of(ended.out, "openmp"))) << failure;
@@ -90,7 +90,7 @@ TEST_F(CudaProgram, each_failure_is_its_rows_status_and_openmps_row_goes_on)
 
 TEST_F(CudaProgram, crash_at_a_launch_is_its_rows_error_and_openmps_row_goes_on)
 {
-    const Ended ended = run(small_bench, "crash-launch");
+    const CudaRun ended = run(small_bench, "crash-launch");
     EXPECT_EQ(ended.code, 1) << ended.errors;
     EXPECT_TRUE(contains(row_of(ended.out, "cuda"), "error"));
     EXPECT_TRUE(contains(ended.out + ended.errors, "the driver of cuda (")) << ended.out;
@@ -100,7 +100,7 @@ TEST_F(CudaProgram, crash_at_a_launch_is_its_rows_error_and_openmps_row_goes_on)
 
 TEST(CudaDriver, that_crashes_at_its_start_is_named_and_openmps_row_goes_on)
 {
-    const Ended ended = run(small_bench, "crash");
+    const CudaRun ended = run(small_bench, "crash");
     EXPECT_EQ(ended.code, 1) << ended.errors;
     EXPECT_TRUE(contains(ended.out + ended.errors,
                          "the driver of cuda was ended by signal 6 (SIGABRT, Aborted) while listing its devices"));

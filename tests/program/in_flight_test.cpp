@@ -5,7 +5,7 @@
 
 using namespace tetrace;
 using namespace tetrace::test;
-using nlohmann::json;
+using Json = nlohmann::json;
 
 namespace {
 
@@ -24,10 +24,10 @@ TEST_F(InFlight, launches_are_reported_in_table_json_and_page_and_compared_only_
     const Ended ended = run(arguments + "--launches-in-flight 2 --out two.json");
     ASSERT_EQ(ended.code, 0) << ended.errors;
     ASSERT_EQ(run(arguments + "--out one.json").code, 0);
-    const json two = json::parse(file("two.json")).at("tetrace"), one = json::parse(file("one.json")).at("tetrace");
+    const Json two = Json::parse(file("two.json")).at("tetrace"), one = Json::parse(file("one.json")).at("tetrace");
     ASSERT_EQ(two.at("rows").size(), 4u);
     for (std::size_t i = 0; i < 4; ++i) {
-        const json& row = two.at("rows")[i];
+        const Json& row = two.at("rows")[i];
         const std::string name = row.at("name");
         const bool is_host = row.at("backend") == "openmp";
         EXPECT_EQ(row.at("status"), "ok") << name;
@@ -49,7 +49,7 @@ TEST_F(InFlight, launches_are_reported_in_table_json_and_page_and_compared_only_
     const Ended compared = run("compare one.json two.json --allow-missing");
     EXPECT_TRUE(contains(compared.out, "2 of 6 rows")) << compared.out << compared.errors;
     EXPECT_EQ(run("show two.json --out again.json").code, 0);
-    EXPECT_EQ(json::parse(file("again.json")), json::parse(file("two.json")));
+    EXPECT_EQ(Json::parse(file("again.json")), Json::parse(file("two.json")));
 }
 
 TEST_F(InFlight, launches_are_refused_where_no_row_can_have_them)

@@ -10,7 +10,7 @@ using namespace tetrace::test;
 
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
 class LatticeProgram : public ProgramTest {};
 
@@ -21,12 +21,12 @@ TEST_F(LatticeProgram, is_right_with_every_method_layout_and_schedule)
     const Ended ended = run("check --scene lattice:7 --backend openmp,embree,cuda-host --method all --size 24 "
                             "--schedule tiles,persistent,packets --rays primary,ao --threads 1 --out check.json");
     EXPECT_EQ(ended.code, 0) << ended.out << ended.errors;
-    const json result = json::parse(file("check.json")).at("tetrace");
+    const Json result = Json::parse(file("check.json")).at("tetrace");
     EXPECT_EQ(result.at("scenes")[0].at("name"), "lattice:7");
     EXPECT_EQ(result.at("scenes")[0].at("source"), "lattice, 7 along each axis");
     EXPECT_EQ(result.at("scenes")[0].at("tets"), 6 * 7 * 7 * 7);
     std::uint64_t hits = 0;
-    for (const json& row : result.at("rows")) {
+    for (const Json& row : result.at("rows")) {
         if (row.at("status") == "unsupported") continue; // Embree 4 lacks streams
         hits += row.at("counts").at("hits").get<std::uint64_t>();
     }

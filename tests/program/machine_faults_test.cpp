@@ -6,7 +6,7 @@
 
 using namespace tetrace;
 using namespace tetrace::test;
-using nlohmann::json;
+using Json = nlohmann::json;
 
 namespace {
 
@@ -29,11 +29,11 @@ protected:
                 read_text(folder_ / "stderr")};
     }
     /// What a result says of its rows, but for times.
-    [[nodiscard]] json answers(const std::string& name) const
+    [[nodiscard]] Json answers(const std::string& name) const
     {
-        const json all = result(name);
-        json answers;
-        for (const json& row : all.at("rows"))
+        const Json all = result(name);
+        Json answers;
+        for (const Json& row : all.at("rows"))
             answers.push_back({row.at("name"), row.at("status"), row.at("hit_hash"), row.at("verification")});
         EXPECT_FALSE(answers.empty());
         return answers;
@@ -136,8 +136,8 @@ TEST_F(MachineFaults, clock_of_the_day_that_jumps_changes_no_answer_and_no_rate)
     const Ended ended = verb("bench --samples 5 --sample-time 0 --out jumping.json");
     EXPECT_EQ(ended.code, 0) << ended.errors;
     EXPECT_EQ(answers("jumping.json"), answers("still.json"));
-    const json jumping = result("jumping.json");
-    for (const json& sample : jumping["rows"][0]["times"]["samples_s"])
+    const Json jumping = result("jumping.json");
+    for (const Json& sample : jumping["rows"][0]["times"]["samples_s"])
         EXPECT_LT(sample.get<double>(), 60.0) << "a jump is a day at least";
     EXPECT_LT(jumping["timed_s"].get<double>(), 3600.0);
     EXPECT_EQ(verb("check").code, 0);

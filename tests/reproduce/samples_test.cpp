@@ -14,7 +14,7 @@ using namespace tetrace::test;
 
 namespace {
 
-constexpr std::size_t views = 4, samples = 3;
+constexpr std::size_t view_total = 4, samples = 3;
 
 /// The same of searches, whose output is a face a ray.
 class TimedSearches : public TimedSession {
@@ -117,10 +117,10 @@ TEST_F(Samples, of_a_fast_device_last_as_long_as_asked_for_and_of_a_slow_one_are
         const double rays = 8 * 8;
         EXPECT_NEAR(figures_of(row)->mrays_per_s, 1e-6 * rays / pass_s_[i], 1e-9);
         if (passes[i] > 1) {
-            EXPECT_EQ(launches_of(launches_, {i, passes[i]}), views * samples);
+            EXPECT_EQ(launches_of(launches_, {i, passes[i]}), view_total * samples);
         }
         // To verify and to warm up, a single pass before each sample or the sample itself, the first view at the end.
-        EXPECT_EQ(launches_of(launches_, {i, 1}), views * (2 + samples) + 1);
+        EXPECT_EQ(launches_of(launches_, {i, 1}), view_total * (2 + samples) + 1);
     }
 }
 
@@ -168,7 +168,7 @@ TEST_F(Samples, of_gpus_are_interleaved_with_each_other_and_not_with_those_of_th
     scene.rows[3].device.kind = DeviceKind::emulated; // on the host's processor
     run(scene);
     std::vector<std::size_t> expected;
-    for (std::size_t view = 0; view < views; ++view) {
+    for (std::size_t view = 0; view < view_total; ++view) {
         expected.insert(expected.end(), {0, 1, 2, 3}); // verified
         for (const std::vector<std::size_t>& group : {std::vector<std::size_t>{0, 2}, {1, 3}})
             for (std::size_t sample = 0; sample <= samples; ++sample) // the first one warms up
@@ -189,7 +189,7 @@ TEST_F(Samples, are_taken_again_while_the_gpu_is_throttled)
     ASSERT_TRUE(row.readings.has_value());
     EXPECT_FALSE(scene.rows[1].readings.has_value());
     EXPECT_EQ(row.readings->dropped, 2u);
-    EXPECT_EQ(row.readings->states.size(), views * samples);
+    EXPECT_EQ(row.readings->states.size(), view_total * samples);
     EXPECT_EQ(row.readings->throttled(), 0u);
     EXPECT_EQ(row.readings->reasons, "heat");
     EXPECT_EQ(row.readings->median(&GpuState::clock_mhz), 1500);
@@ -203,7 +203,7 @@ TEST_F(Samples, of_a_gpu_that_stays_throttled_make_its_row_noisy_which_says_why)
 {
     MachineWatch watch(host_, {}, host_clock(), 0, monitor(0, 1'000'000));
     SceneRun scene = run_with_gpu(watch);
-    EXPECT_EQ(scene.rows[0].readings->dropped, 2 * views * samples);
+    EXPECT_EQ(scene.rows[0].readings->dropped, 2 * view_total * samples);
     watch.pulses().judge_rows(scene.rows, {});
     EXPECT_TRUE(contains(scene.rows[0].disturbance, "its GPU was throttled in 12 of 12 samples (heat)"))
         << scene.rows[0].disturbance;

@@ -13,9 +13,9 @@ using namespace tetrace::test;
 namespace {
 
 /// openmp's answers, for which a ray takes as long as a test says, on a clock that nothing else moves.
-class TimedSession : public WrappedSession {
+class BudgetedSession : public WrappedSession {
 public:
-    TimedSession(std::unique_ptr<Session> inner, double& now_s, const double& ray_s, double first_launch_s)
+    BudgetedSession(std::unique_ptr<Session> inner, double& now_s, const double& ray_s, double first_launch_s)
         : WrappedSession(std::move(inner)), now_s_(&now_s), ray_s_(&ray_s), compile_s_(first_launch_s)
     {
     }
@@ -65,7 +65,7 @@ protected:
         rows_.push_back(open_row(key, scene_, options_));
         RowRun& row = rows_.back();
         ray_s_.push_back(std::make_unique<double>(view_s / view_rays));
-        row.session = std::make_unique<TimedSession>(std::move(row.session), now_s_, *ray_s_.back(), first_launch_s);
+        row.session = std::make_unique<BudgetedSession>(std::move(row.session), now_s_, *ray_s_.back(), first_launch_s);
         row.key.backend = backend;
         return rows_.size() - 1;
     }
@@ -399,7 +399,7 @@ TEST_F(BudgetOfRows, estimates_rays_that_are_given_from_a_part_of_them)
     key.kernel.task = Task::rays;
     rows_.push_back(open_row(key, scene_, options_));
     const double ray_s = 1;
-    rows_[0].session = std::make_unique<TimedSession>(std::move(rows_[0].session), now_s_, ray_s, 0);
+    rows_[0].session = std::make_unique<BudgetedSession>(std::move(rows_[0].session), now_s_, ray_s, 0);
     Budget limit = budget_of((views_needed + views_estimated) * view_rays);
     static_cast<void>(run(limit));
     expect_measured(0);

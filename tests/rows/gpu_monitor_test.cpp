@@ -1,6 +1,7 @@
 // What is asked of GPUs while rows are timed: NVIDIA's library by a stub, the amdgpu driver's files by a folder.
 #include "bench/measuring/gpu_monitor.h"
 
+#include "tests/rows/gpu_device.h"
 #include "tests/support/temporary_folder.h"
 
 #include <cstring>
@@ -13,17 +14,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-Device gpu(const char* uuid, const char* pci)
-{
-    Device device;
-    device.kind = DeviceKind::gpu;
-    device.uuid = uuid;
-    device.pci = pci;
-    return device;
-}
-
-constexpr const char* uuid = "00112233445566778899aabbccddeeff";
-constexpr const char* pci = "0000:41:00.0";
+constexpr const char* gpu_uuid = "00112233445566778899aabbccddeeff";
+constexpr const char* gpu_pci = "0000:41:00.0";
 
 class Amdgpu : public testing::Test {
 protected:
@@ -44,17 +36,17 @@ protected:
         std::memcpy(bytes.data() + 68, &throttling, sizeof throttling);
         write_file(folder_ / "gpu_metrics", bytes);
     }
-    [[nodiscard]] GpuState told() const { return amdgpu_monitor(gpu("", pci), root_.path())->read(); }
+    [[nodiscard]] GpuState told() const { return amdgpu_monitor(gpu("", gpu_pci), root_.path())->read(); }
 
     TemporaryFolder root_;
-    fs::path folder_ = root_ / "bus/pci/devices" / pci;
+    fs::path folder_ = root_ / "bus/gpu_pci/devices" / gpu_pci;
 };
 
 } // namespace
 
 TEST(Nvml, reports_clocks_power_and_heat_of_a_gpu_by_its_uuid_or_its_address)
 {
-    for (const Device& device : {gpu(uuid, ""), gpu("", pci), gpu(uuid, pci)}) {
+    for (const Device& device : {gpu(gpu_uuid, ""), gpu("", gpu_pci), gpu(gpu_uuid, gpu_pci)}) {
         const auto monitor = nvml_monitor(device, TETRACE_STUB_NVML_LIBRARY);
         ASSERT_NE(monitor, nullptr);
         const GpuState state = monitor->read();
@@ -71,18 +63,18 @@ TEST(Nvml, reports_what_throttles_but_not_what_the_user_asked_for)
     for (const auto& [word, text] :
          {std::pair("4", "power"), {"64", "hardware heat"}, {"36", "power, heat"}, {"19", ""}}) {
         const ScopedVariable bits("TETRACE_STUB_NVML", word);
-        EXPECT_EQ(nvml_monitor(gpu(uuid, ""), TETRACE_STUB_NVML_LIBRARY)->read().throttled, text) << word;
+        EXPECT_EQ(nvml_monitor(gpu(gpu_uuid, ""), TETRACE_STUB_NVML_LIBRARY)->read().throttled, text) << word;
     }
 }
 
 TEST(Nvml, that_is_missing_does_not_start_or_does_not_know_the_gpu_reports_nothing)
 {
-    EXPECT_EQ(nvml_monitor(gpu(uuid, pci), "libof-no-such-name.so.1"), nullptr);
+    EXPECT_EQ(nvml_monitor(gpu(gpu_uuid, gpu_pci), "libof-no-such-name.so.1"), nullptr);
     EXPECT_EQ(nvml_monitor(gpu("ffffffffffffffffffffffffffffffff", "0000:42:00.0"), TETRACE_STUB_NVML_LIBRARY),
               nullptr);
     EXPECT_EQ(nvml_monitor(gpu("", ""), TETRACE_STUB_NVML_LIBRARY), nullptr);
     const ScopedVariable broken("TETRACE_STUB_NVML", "broken");
-    EXPECT_EQ(nvml_monitor(gpu(uuid, pci), TETRACE_STUB_NVML_LIBRARY), nullptr);
+    EXPECT_EQ(nvml_monitor(gpu(gpu_uuid, gpu_pci), TETRACE_STUB_NVML_LIBRARY), nullptr);
 }
 
 TEST_F(Amdgpu, reports_what_the_driver_s_files_have)
@@ -122,15 +114,15 @@ TEST_F(Amdgpu, reports_that_it_throttles_if_its_metrics_are_of_a_known_form)
 
 TEST_F(Amdgpu, is_found_by_its_address_and_its_sensors)
 {
-    EXPECT_EQ(amdgpu_monitor(gpu(uuid, ""), root_.path()), nullptr);
+    EXPECT_EQ(amdgpu_monitor(gpu(gpu_uuid, ""), root_.path()), nullptr);
     EXPECT_EQ(amdgpu_monitor(gpu("", "0000:42:00.0"), root_.path()), nullptr);
     write_file(folder_ / "hwmon/hwmon3/name", "i915\n");
-    EXPECT_EQ(amdgpu_monitor(gpu("", pci), root_.path()), nullptr);
+    EXPECT_EQ(amdgpu_monitor(gpu("", gpu_pci), root_.path()), nullptr);
 }
 
 TEST(GpuMonitor, there_is_none_for_a_device_on_the_host)
 {
-    Device emulated = gpu(uuid, pci);
+    Device emulated = gpu(gpu_uuid, gpu_pci);
     emulated.kind = DeviceKind::emulated;
     EXPECT_EQ(find_gpu_monitor(emulated), nullptr);
 }

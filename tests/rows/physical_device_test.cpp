@@ -1,8 +1,11 @@
 #include "bench/rows/physical_device.h"
 
+#include "tests/rows/gpu_device.h"
+
 #include <gtest/gtest.h>
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 
@@ -12,15 +15,6 @@ Device host(DeviceKind kind)
 {
     Device device;
     device.kind = kind;
-    return device;
-}
-
-Device gpu(const char* uuid, const char* pci)
-{
-    Device device;
-    device.kind = DeviceKind::gpu;
-    device.uuid = uuid;
-    device.pci = pci;
     return device;
 }
 

@@ -15,9 +15,9 @@ using namespace tetrace::test;
 namespace {
 
 /// openmp's answers on a device of its own, in as many seconds as a test says.
-class TimedSession : public WrappedSession {
+class PulsedSession : public WrappedSession {
 public:
-    TimedSession(std::unique_ptr<Session> inner, const double& seconds)
+    PulsedSession(std::unique_ptr<Session> inner, const double& seconds)
         : WrappedSession(std::move(inner)), seconds_(&seconds)
     {
     }
@@ -195,7 +195,7 @@ TEST_F(Pulsed, a_gpu_has_its_own_calibration_which_load_of_the_host_does_not_aff
     double gpu_s = 0.5;
     rows_[1].device.kind = DeviceKind::gpu;
     rows_[1].device.name = "a GPU";
-    rows_[1].session = std::make_unique<TimedSession>(std::move(rows_[1].session), gpu_s);
+    rows_[1].session = std::make_unique<PulsedSession>(std::move(rows_[1].session), gpu_s);
     Pulses pulses(pointers_to(rows_), host(), clock());
     pulses.take();
     gpu_s = 1.0; // its clock went down
@@ -214,7 +214,7 @@ TEST_F(Pulsed, a_pulse_ends_where_its_row_fails)
 {
     double gpu_s = 0.5;
     rows_[1].device.kind = DeviceKind::gpu;
-    rows_[1].session = std::make_unique<TimedSession>(std::move(rows_[1].session), gpu_s);
+    rows_[1].session = std::make_unique<PulsedSession>(std::move(rows_[1].session), gpu_s);
     Pulses pulses(pointers_to(rows_), host(), clock());
     pulses.take();
     rows_[1].outcome = Failed{ErrorKind::internal, "the device was lost"};

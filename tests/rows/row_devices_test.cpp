@@ -24,7 +24,7 @@ Device device(const char* name, DeviceKind kind, const char* uuid = "")
 // Backends are static as every backend is: what is found out about a device is kept by its address.
 
 /// A row of 1,000,000 steps in a millisecond: 44 GB/s in tet80.
-RowRecord row_of(Backend& backend)
+RowRecord row_on(Backend& backend)
 {
     RowRecord row;
     row.key = {"a", backend.name(), {}, RayKind::primary, TetOrder::chains, 0};
@@ -44,7 +44,7 @@ TEST(RowDevices, are_listed_once_by_hardware_emulations_last)
     static FakeBackend opencl("opencl", device("PoCL", DeviceKind::emulated)),
         cuda("cuda", device("GPU", DeviceKind::gpu, "a")), vulkan("vulkan", device("GPU", DeviceKind::gpu, "a")),
         openmp("openmp", device("CPU", DeviceKind::cpu));
-    const auto rows = list(row_of(opencl), row_of(cuda), row_of(openmp), row_of(vulkan), row_of(openmp));
+    const auto rows = list(row_on(opencl), row_on(cuda), row_on(openmp), row_on(vulkan), row_on(openmp));
     const auto devices = devices_of(rows);
     std::string order;
     for (const RowDevice& found : devices)
@@ -59,7 +59,7 @@ TEST(RowDevices, bandwidth_is_a_share_of_that_of_the_rows_own_device)
     static FakeBackend slow("a", device("slow", DeviceKind::gpu, "a")), fast("b", device("fast", DeviceKind::gpu, "b"));
     slow.measure = [] { return Yardstick{88e9, 1e-6}; };
     fast.measure = [] { return Yardstick{440e9, 1e-6}; };
-    const auto rows = list(row_of(slow), row_of(fast));
+    const auto rows = list(row_on(slow), row_on(fast));
     auto devices = devices_of(rows);
     EXPECT_FALSE(copy_shares(rows[0], devices).has_value()) << "not measured yet";
     measure_devices(devices, {}, {&slow, &fast});
@@ -75,7 +75,7 @@ TEST(RowDevices, a_row_s_ceiling_is_that_of_the_level_that_holds_its_scene)
     };
     for (const auto& [bytes, ceiling] :
          {std::pair(500, 176e9), {4'000, 176e9}, {4'001, 88e9}, {64'000, 44e9}, {1 << 30, 44e9}}) {
-        auto rows = list(row_of(gpu));
+        auto rows = list(row_on(gpu));
         rows[0].setup.bytes = bytes;
         auto devices = devices_of(rows);
         measure_devices(devices, {}, {&gpu});
@@ -112,7 +112,7 @@ TEST(Yardstick, copies_at_sizes_from_caches_to_memory_and_each_long_enough)
 TEST(RowDevices, an_api_on_the_host_without_a_yardstick_has_openmps_and_one_on_a_gpu_none)
 {
     static FakeBackend host("host", device("CPU", DeviceKind::cpu)), gpu("gpu", device("GPU", DeviceKind::gpu));
-    auto devices = devices_of(list(row_of(host), row_of(gpu)));
+    auto devices = devices_of(list(row_on(host), row_on(gpu)));
     measure_devices(devices, {.threads = 1}, {&host, &gpu});
     ASSERT_TRUE(devices[0].yardstick.has_value());
     EXPECT_GT(devices[0].yardstick->copy_bytes_per_s, 0);
@@ -125,7 +125,7 @@ TEST(RowDevices, a_device_that_fails_keeps_the_reason_and_the_others_are_measure
         good("good", device("good", DeviceKind::gpu, "b"));
     lost.measure = []() -> std::optional<Yardstick> { throw Error(ErrorKind::internal, "the device was lost"); };
     good.measure = [] { return Yardstick{1e9, 1e-6}; };
-    auto devices = devices_of(list(row_of(lost), row_of(good)));
+    auto devices = devices_of(list(row_on(lost), row_on(good)));
     measure_devices(devices, {}, {&lost, &good});
     EXPECT_EQ(devices[0].problem, "microbenchmark: the device was lost");
     EXPECT_EQ(devices[1].problem, "");

@@ -5,6 +5,7 @@
 #include "scenes/optimise/insertion.h"
 #include "scenes/optimise/vertex_move.h"
 #include "scenes/procedural.h"
+#include "tests/scenes/edited_mesh.h"
 #include "tests/support/random.h"
 #include "tests/support/sound_tets.h"
 
@@ -20,9 +21,7 @@ using namespace tetrace::test;
 
 namespace {
 
-constexpr double anything = -1e9; // as `least`: whatever is possible is done
-
-const Scene& cubes()
+const Scene& coarse_cubes()
 {
     static const Scene scene = make_cubes(6);
     return scene;
@@ -43,21 +42,6 @@ TetMesh half_fan(std::uint32_t n, Random& random)
                               i > 0 ? make_half_face(i - 1, 2) : NO_HALF_FACE},
                              {FREE_FACE, FREE_FACE, FREE_FACE, FREE_FACE}});
     return mesh;
-}
-
-/// Least cost of all triangulations of an open ring, tried one by one; impossible where none may be made.
-double cheapest(const EditableMesh& mesh, const EdgeRing& ring, std::size_t i, std::size_t k)
-{
-    if (k - i < 2) return 0;
-    const auto at = [&](std::size_t n) { return mesh.point(ring.vertices[n]); };
-    const Double3 a = mesh.point(ring.a), b = mesh.point(ring.b);
-    const bool on_side = k - i + 1 == ring.vertices.size(); // the faces at the last chord are on the boundary
-    double best = impossible;
-    for (std::size_t j = i + 1; j < k; ++j) {
-        if (!may_be_made(a, at(i), at(j), at(k)) || !may_be_made(b, at(i), at(k), at(j))) continue;
-        best = std::min(best, cheapest(mesh, ring, i, j) + cheapest(mesh, ring, j, k) + area(at(i), at(j), at(k)));
-    }
-    return best + (on_side ? 0 : area(a, at(i), at(k)) + area(b, at(i), at(k)));
 }
 
 double side_area(const TetMesh& mesh)
@@ -99,7 +83,7 @@ std::vector<Corners> put_onto(const EditableMesh& mesh, const VertexStar& star, 
 TEST(BoxSides, refuses_boundary_faces_that_do_not_cover_what_the_old_ones_did)
 {
     for (const int sides : {1, 2}) {
-        EditableMesh mesh(cubes().tets);
+        EditableMesh mesh(coarse_cubes().tets);
         const std::uint32_t v = vertex_on(mesh, sides);
         VertexStar star;
         ASSERT_TRUE(find_star(mesh, v, 400, star));
@@ -117,7 +101,7 @@ TEST(BoxSides, refuses_boundary_faces_that_do_not_cover_what_the_old_ones_did)
             const std::array<std::uint32_t, 1> one = {t};
             EXPECT_FALSE(mesh.replace(one, {})) << "a tet less";
         }
-        EXPECT_EQ(mesh.take(), cubes().tets);
+        EXPECT_EQ(mesh.take(), coarse_cubes().tets);
     }
 }
 
@@ -184,7 +168,7 @@ TEST(BoxSides, edge_removal_with_two_tets_is_its_own_inverse)
 TEST(BoxSides, vertices_slide_to_where_no_other_point_of_their_sides_is_cheaper)
 {
     for (const int sides : {1, 2}) {
-        EditableMesh mesh(cubes().tets);
+        EditableMesh mesh(coarse_cubes().tets);
         const std::uint32_t v = vertex_on(mesh, sides);
         const BoxSides held = mesh.box_sides(v);
         VertexStar star;
@@ -206,7 +190,7 @@ TEST(BoxSides, vertices_slide_to_where_no_other_point_of_their_sides_is_cheaper)
 
 TEST(BoxSides, a_vertex_cannot_leave_its_side)
 {
-    EditableMesh mesh(cubes().tets);
+    EditableMesh mesh(coarse_cubes().tets);
     const std::uint32_t v = vertex_on(mesh, 1);
     VertexStar star;
     ASSERT_TRUE(find_star(mesh, v, 400, star));
@@ -215,12 +199,12 @@ TEST(BoxSides, a_vertex_cannot_leave_its_side)
                               holds_axis(mesh.box_sides(v), 2) ? way : 0};
         EXPECT_FALSE(mesh.move(v, star.tets, mesh.point(v) + inwards));
     }
-    EXPECT_EQ(mesh.take(), cubes().tets);
+    EXPECT_EQ(mesh.take(), coarse_cubes().tets);
 }
 
 TEST(BoxSides, operations_on_them_lower_the_cost_by_what_they_say)
 {
-    EditableMesh mesh(cubes().tets);
+    EditableMesh mesh(coarse_cubes().tets);
     Collapse collapse(mesh);
     EdgeRemoval edges(mesh);
     Insertion insertion(mesh);
@@ -243,9 +227,9 @@ TEST(BoxSides, operations_on_them_lower_the_cost_by_what_they_say)
         }
         ASSERT_NEAR(before - mesh.cost(), gain, 1e-10);
         done[kind] += gain != 0 ? 1 : 0;
-        if (i % 4000 == 0) expect_same_domain(mesh.take(), cubes());
+        if (i % 4000 == 0) expect_same_domain(mesh.take(), coarse_cubes());
     }
     for (const int count : done)
         EXPECT_GT(count, 20);
-    expect_same_domain(mesh.take(), cubes());
+    expect_same_domain(mesh.take(), coarse_cubes());
 }

@@ -40,28 +40,6 @@ TetMesh fan(std::uint32_t n, Random& random)
     return mesh;
 }
 
-// Least cost of all triangulations of the ring, tried one by one; impossible where none may be made.
-double cheapest(const EditableMesh& mesh, const EdgeRing& ring, std::size_t i, std::size_t k)
-{
-    if (k - i < 2) return 0;
-    const auto at = [&](std::size_t n) { return mesh.point(ring.vertices[n]); };
-    const Double3 a = mesh.point(ring.a), b = mesh.point(ring.b);
-    const bool chord = k - i + 1 < ring.vertices.size();
-    double best = impossible;
-    for (std::size_t j = i + 1; j < k; ++j) {
-        if (!may_be_made(a, at(i), at(j), at(k)) || !may_be_made(b, at(i), at(k), at(j))) continue;
-        best = std::min(best, cheapest(mesh, ring, i, j) + cheapest(mesh, ring, j, k) + area(at(i), at(j), at(k)));
-    }
-    return best + (chord ? area(a, at(i), at(k)) + area(b, at(i), at(k)) : 0);
-}
-
-// The jittered cubes with their ball: occlusive faces, hidden tets, free and held vertices.
-const Scene& cubes()
-{
-    static const Scene scene = make_cubes(8);
-    return scene;
-}
-
 std::uint32_t free_vertex(const EditableMesh& mesh)
 {
     for (std::uint32_t v = 0; v < mesh.vertex_slots(); ++v)

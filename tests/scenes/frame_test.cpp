@@ -16,7 +16,7 @@ using namespace tetrace::test;
 
 namespace {
 
-constexpr std::uint32_t size = 16;
+constexpr std::uint32_t side = 16;
 
 Double3 ray_of(const View& view, std::uint32_t x, std::uint32_t y)
 {
@@ -37,14 +37,14 @@ bool hits(Double3 origin, Double3 ray, Double3 a, Double3 b, Double3 c)
 double hit_share(const TriangleMesh& mesh, const View& view)
 {
     std::size_t hit = 0;
-    for (std::uint32_t i = 0; i < size * size; ++i) {
-        const Double3 origin = to_double(view.origin), ray = ray_of(view, i % size, i / size);
+    for (std::uint32_t i = 0; i < side * side; ++i) {
+        const Double3 origin = to_double(view.origin), ray = ray_of(view, i % side, i / side);
         hit += std::ranges::any_of(mesh.triangles, [&](const auto& t) {
             return hits(origin, ray, to_double(mesh.vertices[t[0]]), to_double(mesh.vertices[t[1]]),
                         to_double(mesh.vertices[t[2]]));
         });
     }
-    return static_cast<double>(hit) / (size * size);
+    return static_cast<double>(hit) / (side * side);
 }
 
 /// The share that enters the tight domain.
@@ -52,8 +52,8 @@ double domain_share(const TriangleMesh& mesh, const View& view)
 {
     const Domain domain = make_domain(mesh, DomainKind::tight, 1);
     std::size_t entered = 0;
-    for (std::uint32_t i = 0; i < size * size; ++i) {
-        const Float3 ray = to_float(ray_of(view, i % size, i / size));
+    for (std::uint32_t i = 0; i < side * side; ++i) {
+        const Float3 ray = to_float(ray_of(view, i % side, i / side));
         double enter = 0, leave = 1e30;
         for (int axis = 0; axis < 3; ++axis) {
             const double low = (domain.low()[axis] - view.origin[axis]) / static_cast<double>(ray[axis]);
@@ -63,7 +63,7 @@ double domain_share(const TriangleMesh& mesh, const View& view)
         }
         entered += enter <= leave;
     }
-    return static_cast<double>(entered) / (size * size);
+    return static_cast<double>(entered) / (side * side);
 }
 
 struct Shares {
@@ -74,7 +74,7 @@ Shares shares_of(const TriangleMesh& mesh, const std::vector<Aim>& own)
 {
     Shares shares;
     for (const Camera& camera : make_cameras(CameraSet::frame, mesh, own)) {
-        const View view = make_view(camera, size, size);
+        const View view = make_view(camera, side, side);
         const double hitting = hit_share(mesh, view);
         shares.entering += domain_share(mesh, view) / own_view_count;
         shares.hitting += hitting / own_view_count;

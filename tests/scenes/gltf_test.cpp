@@ -93,14 +93,14 @@ std::vector<std::array<std::array<float, 3>, 3>> triangles_in_place(const Triang
     return list;
 }
 
-MeshSoup read(const std::string& bytes, const std::string& name = "a.glb")
+MeshSoup read_gltf(const std::string& bytes, const std::string& name = "a.glb")
 {
     return parse_mesh(name, bytes);
 }
 
 std::string refusal(const std::string& bytes, const std::string& name = "a.glb")
 {
-    return error_of([&] { (void)read(bytes, name); });
+    return error_of([&] { (void)read_gltf(bytes, name); });
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to)
@@ -124,9 +124,9 @@ protected:
 
 TEST_F(Gltf, gives_the_same_triangles_as_any_other_format)
 {
-    const MeshSoup soup = read(plain_);
+    const MeshSoup soup = read_gltf(plain_);
     EXPECT_EQ(soup.mesh, tetrahedron());
-    EXPECT_EQ(read(plain_, "a.GLB").mesh, tetrahedron());
+    EXPECT_EQ(read_gltf(plain_, "a.GLB").mesh, tetrahedron());
     EXPECT_NE(soup.source_hash, 0u);
 }
 
@@ -143,7 +143,7 @@ TEST_F(Gltf, reads_json_with_its_data_inside)
     }
     const std::string json = replaced(json_of(R"({"mesh":0})"), R"("byteLength":72)",
                                       R"("byteLength":72,"uri":"data:application/octet-stream;base64,)" + base64 + '"');
-    EXPECT_EQ(read(json, "a.gltf").mesh, tetrahedron());
+    EXPECT_EQ(read_gltf(json, "a.gltf").mesh, tetrahedron());
 }
 
 TEST_F(Gltf, reads_buffers_in_files_of_the_same_folder)
@@ -170,7 +170,7 @@ TEST_F(Gltf, reads_buffers_in_files_of_the_same_folder)
     write_file(folder / "short.bin", tetrahedron_data().substr(1));
     for (const std::string uri : {"sub/box.bin", "sub%2Fbox.bin", "../box.bin", "/etc/passwd", "..", "", "a%00b"})
         EXPECT_TRUE(contains(refusal_beside(uri), "is not a file of the same folder; export it as .glb")) << uri;
-    EXPECT_TRUE(contains(refusal_beside("none.bin"), "none.bin' cannot be read; copy it into the folder"));
+    EXPECT_TRUE(contains(refusal_beside("none.bin"), "none.bin' cannot be read_gltf; copy it into the folder"));
     EXPECT_TRUE(contains(refusal_beside("sub"), "cannot be read"));
     EXPECT_TRUE(contains(refusal_beside("short.bin"), "buffer 0 has 71 bytes, not 72"));
     EXPECT_TRUE(contains(refusal(json("my%20box+1.bin"), "a.gltf"), "is not a file of the same folder"))
@@ -202,8 +202,9 @@ TEST_F(Gltf, reads_sparse_accessors)
                             R"(},"values":{"bufferView":3}},"min":[0,0,0])");
         return glb(replaced(json, R"("bufferView":0,)", base), data);
     };
-    EXPECT_EQ(read(sparse("5125")).mesh.vertices, (std::vector<Float3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {7, 8, 9}}));
-    EXPECT_EQ(read(sparse("5121", "")).mesh.vertices,
+    EXPECT_EQ(read_gltf(sparse("5125")).mesh.vertices,
+              (std::vector<Float3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {7, 8, 9}}));
+    EXPECT_EQ(read_gltf(sparse("5121", "")).mesh.vertices,
               (std::vector<Float3>{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {7, 8, 9}}));
     EXPECT_TRUE(contains(refusal(sparse("5126")), "sparse indices"));
     data.replace(72, 1, "\4");
@@ -215,7 +216,7 @@ TEST_F(Gltf, reads_sparse_accessors)
 TEST_F(Gltf, looks_at_version_and_required_extensions_first)
 {
     EXPECT_TRUE(contains(refusal(changed(R"("version":"2.0")", R"("version":"1.0")")),
-                         "it is glTF 1.0, which is not read; convert it to glTF 2.0"));
+                         "it is glTF 1.0, which is not read_gltf; convert it to glTF 2.0"));
     EXPECT_TRUE(contains(refusal(R"({"asset":{"version":"1.1"},"meshes":{"a":{}}})", "a.gltf"), "it is glTF 1.1"));
     std::string first = plain_;
     first[4] = 1;
@@ -227,10 +228,10 @@ TEST_F(Gltf, looks_at_version_and_required_extensions_first)
          {"EXT_texture_webp", "KHR_texture_basisu", "MSFT_texture_dds", "EXT_texture_avif", "VRM", "KHR_xmp_json_ld",
           "KHR_materials_variants", "KHR_node_visibility", "MSFT_lod", "KHR_animation_pointer",
           "EXT_lights_image_based", "KHR_mesh_quantization"})
-        EXPECT_EQ(read(required(name)).mesh, tetrahedron()) << name;
+        EXPECT_EQ(read_gltf(required(name)).mesh, tetrahedron()) << name;
     for (const std::string name : {"CESIUM_RTC", "EXT_meshopt_compression", "KHR_draco_mesh_compressionX", "VRMX"})
-        EXPECT_TRUE(contains(refusal(required(name)),
-                             "it requires the extension " + name + ", which is not read; export it again as .glb"));
+        EXPECT_TRUE(contains(refusal(required(name)), "it requires the extension " + name +
+                                                          ", which is not read_gltf; export it again as .glb"));
 }
 
 TEST_F(Gltf, honours_extensions_of_nodes)
@@ -238,10 +239,10 @@ TEST_F(Gltf, honours_extensions_of_nodes)
     const auto node = [](const std::string& what) { return glb(json_of(what), tetrahedron_data()); };
     const std::string hidden = R"({"mesh":0,"children":[1]},{"extensions":{"KHR_node_visibility":{"visible":false}},)"
                                R"("mesh":0,"children":[2]},{"mesh":0})";
-    EXPECT_EQ(read(node(hidden)).mesh, tetrahedron()) << "a hidden node hides its children";
+    EXPECT_EQ(read_gltf(node(hidden)).mesh, tetrahedron()) << "a hidden node hides its children";
     EXPECT_TRUE(contains(refusal(node(R"({"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{}}}})")),
                          "node 0: it uses the extension EXT_mesh_gpu_instancing"));
-    EXPECT_EQ(read(changed(R"("buffers")", R"("extensionsUsed":["EXT_mesh_gpu_instancing"],"buffers")")).mesh,
+    EXPECT_EQ(read_gltf(changed(R"("buffers")", R"("extensionsUsed":["EXT_mesh_gpu_instancing"],"buffers")")).mesh,
               tetrahedron());
 }
 
@@ -259,7 +260,7 @@ TEST_F(Gltf, reads_draco_or_names_its_package)
                  fmt::format(R"("bufferViews":[{{"buffer":0,"byteLength":{}}}])", draco.size()));
     json = replaced(json, R"("byteLength":72)", fmt::format(R"("byteLength":{})", draco.size()));
     if (const std::string error = refusal(glb(json, draco)); error.empty()) {
-        const TriangleMesh mesh = read(glb(json, draco)).mesh;
+        const TriangleMesh mesh = read_gltf(glb(json, draco)).mesh;
         EXPECT_EQ(triangles_in_place(mesh), triangles_in_place(tetrahedron()));
         const std::string damaged = glb(json, std::string(draco.size(), 'x'));
         EXPECT_TRUE(contains(refusal(damaged), "its Draco data cannot be read"));
@@ -268,14 +269,14 @@ TEST_F(Gltf, reads_draco_or_names_its_package)
     } else {
         EXPECT_TRUE(contains(error, "install libdraco-dev")) << error;
     }
-    EXPECT_EQ(read(glb(json_of(R"({"mesh":0})", use + R"("indices":1)"), tetrahedron_data())).mesh, tetrahedron())
-        << "plain accessors are read where they are there";
+    EXPECT_EQ(read_gltf(glb(json_of(R"({"mesh":0})", use + R"("indices":1)"), tetrahedron_data())).mesh, tetrahedron())
+        << "plain accessors are read_gltf where they are there";
 }
 
 TEST_F(Gltf, puts_meshes_where_their_nodes_are)
 {
     const auto vertices = [&](const std::string& nodes) {
-        return read(glb(json_of(nodes), tetrahedron_data())).mesh.vertices;
+        return read_gltf(glb(json_of(nodes), tetrahedron_data())).mesh.vertices;
     };
     EXPECT_EQ(vertices(R"({"mesh":0,"translation":[1,2,3],"scale":[2,2,4]})"),
               (std::vector<Float3>{{1, 2, 3}, {3, 2, 3}, {1, 4, 3}, {1, 2, 7}}));
@@ -288,7 +289,7 @@ TEST_F(Gltf, puts_meshes_where_their_nodes_are)
     ASSERT_EQ(twice.size(), 8u) << "a mesh of two nodes is there twice";
     EXPECT_EQ(twice[0], (Float3{2, 0, 0}));
     EXPECT_EQ(twice[5], (Float3{2, 0, 0}));
-    const MeshSoup mirrored = read(glb(json_of(R"({"mesh":0,"scale":[-1,1,1]})"), tetrahedron_data()));
+    const MeshSoup mirrored = read_gltf(glb(json_of(R"({"mesh":0,"scale":[-1,1,1]})"), tetrahedron_data()));
     EXPECT_EQ(mirrored.mesh.triangles.front(), (std::array<std::uint32_t, 3>{0, 1, 2})) << "still outwards";
 }
 
@@ -299,7 +300,7 @@ TEST_F(Gltf, reads_strips_fans_and_triangles_without_indices)
         std::string data = tetrahedron_data();
         for (std::uint16_t i = 0; i < 4; ++i)
             std::memcpy(data.data() + 48 + 2 * i, &i, sizeof i);
-        return read(glb(four, data)).mesh.triangles;
+        return read_gltf(glb(four, data)).mesh.triangles;
     };
     using Triangles = std::vector<std::array<std::uint32_t, 3>>;
     EXPECT_EQ(triangles(R"("mode":5,"indices":1)"), (Triangles{{0, 1, 2}, {2, 1, 3}}));
@@ -334,7 +335,7 @@ TEST_F(Gltf, survives_every_truncation_and_seeded_byte_flips)
 {
     const auto try_to_read = [](const std::string& bytes) {
         try {
-            const MeshSoup soup = read(bytes);
+            const MeshSoup soup = read_gltf(bytes);
             for (const auto& triangle : soup.mesh.triangles)
                 for (const std::uint32_t corner : triangle)
                     ASSERT_LT(corner, soup.mesh.vertices.size());

@@ -14,16 +14,16 @@ using namespace tetrace::test;
 namespace {
 
 using Triangles = std::vector<std::array<std::size_t, 3>>;
-using Corners = std::vector<Float3>;
+using Points = std::vector<Float3>;
 
-Double3 area_of(const Corners& corners, const std::array<std::size_t, 3>& triangle)
+Double3 area_of(const Points& corners, const std::array<std::size_t, 3>& triangle)
 {
     const Double3 a = to_double(corners[triangle[0]]);
     return cross(to_double(corners[triangle[1]]) - a, to_double(corners[triangle[2]]) - a) * 0.5;
 }
 
 /// Newell's: its length is the area of a flat polygon.
-Double3 area_of(const Corners& corners)
+Double3 area_of(const Points& corners)
 {
     Double3 sum;
     for (std::size_t i = 2; i < corners.size(); ++i)
@@ -33,7 +33,7 @@ Double3 area_of(const Corners& corners)
 
 /// Every triangle has an area and is oriented as the flat polygon, the areas add up, and the edges that only one
 /// triangle has are the polygon's.
-void expect_tiling(const Corners& corners, const CutPolygon& cut, std::size_t triangles)
+void expect_tiling(const Points& corners, const CutPolygon& cut, std::size_t triangles)
 {
     EXPECT_TRUE(cut.is_simple);
     EXPECT_EQ(cut.triangles.size(), triangles);
@@ -59,9 +59,9 @@ void expect_tiling(const Corners& corners, const CutPolygon& cut, std::size_t tr
 }
 
 /// A wheel with that many teeth, in a plane that is not one of the axes'.
-Corners gear(std::size_t teeth)
+Points gear(std::size_t teeth)
 {
-    Corners corners;
+    Points corners;
     for (std::size_t i = 0; i < 2 * teeth; ++i) {
         const double angle = std::numbers::pi * static_cast<double>(i) / static_cast<double>(teeth);
         const double radius = i % 2 == 0 ? 1 : 0.9, x = radius * std::cos(angle), y = radius * std::sin(angle);
@@ -70,7 +70,7 @@ Corners gear(std::size_t teeth)
     return corners;
 }
 
-Corners turned(Corners corners)
+Points turned(Points corners)
 {
     std::reverse(corners.begin(), corners.end());
     return corners;
@@ -80,7 +80,7 @@ Corners turned(Corners corners)
 
 TEST(Polygon, that_is_convex_is_a_fan)
 {
-    EXPECT_EQ(cut_polygon(Corners{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}).triangles,
+    EXPECT_EQ(cut_polygon(Points{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}).triangles,
               (Triangles{{0, 1, 2}, {0, 2, 3}}));
 }
 
@@ -97,7 +97,7 @@ TEST(Polygon, that_is_not_convex_is_tiled_in_every_plane_from_every_corner)
     Random random(43);
     for (int run = 0; run < 200; ++run) {
         const std::size_t count = 4 + random.below(20);
-        Corners corners;
+        Points corners;
         for (std::size_t i = 0; i < count; ++i) { // seen from the origin, each corner is further round
             const double angle = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(count);
             const double radius = 0.1 + 0.001 * random.below(900);
@@ -114,9 +114,9 @@ TEST(Polygon, that_is_not_convex_is_tiled_in_every_plane_from_every_corner)
 
 TEST(Polygon, has_no_triangle_without_area_where_corners_are_on_a_line)
 {
-    const Corners square = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}};
+    const Points square = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}};
     for (std::size_t first = 0; first < square.size(); ++first) {
-        Corners corners = square;
+        Points corners = square;
         std::rotate(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(first), corners.end());
         expect_tiling(corners, cut_polygon(corners), 6);
         expect_tiling(turned(corners), cut_polygon(turned(corners)), 6);
@@ -126,8 +126,8 @@ TEST(Polygon, has_no_triangle_without_area_where_corners_are_on_a_line)
 // Which of its triangulations CGAL returns for corners on one circle depends on its version; ours must not.
 TEST(Polygon, is_cut_the_same_way_wherever_corners_are_on_one_circle)
 {
-    // Corners 2, 3, 6 and 7 are on a circle.
-    const Corners gate = {{0, 0, 0}, {1, 0, 0}, {1, 2, 0}, {2, 2, 0}, {2, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}};
+    // Points 2, 3, 6 and 7 are on a circle.
+    const Points gate = {{0, 0, 0}, {1, 0, 0}, {1, 2, 0}, {2, 2, 0}, {2, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}};
     EXPECT_EQ(cut_polygon(gate).triangles,
               (Triangles{{0, 1, 2}, {0, 2, 7}, {2, 3, 6}, {2, 6, 7}, {3, 4, 5}, {3, 5, 6}}));
     EXPECT_EQ(cut_polygon(turned(gate)).triangles,
@@ -136,9 +136,9 @@ TEST(Polygon, is_cut_the_same_way_wherever_corners_are_on_one_circle)
 
 TEST(Polygon, keeps_a_hole_open_that_an_edge_joins_to_its_outline)
 {
-    const Corners corners = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0},
-                             {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}, {1, 1, 0}};
-    for (const Corners& polygon : {corners, turned(corners)}) {
+    const Points corners = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0},
+                            {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}, {1, 1, 0}};
+    for (const Points& polygon : {corners, turned(corners)}) {
         const CutPolygon cut = cut_polygon(polygon);
         EXPECT_TRUE(cut.is_simple);
         EXPECT_EQ(cut.triangles.size(), 8u);
@@ -153,10 +153,10 @@ TEST(Polygon, keeps_a_hole_open_that_an_edge_joins_to_its_outline)
 
 TEST(Polygon, that_crosses_itself_or_has_no_area_is_reported)
 {
-    const CutPolygon bow = cut_polygon(Corners{{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 1, 0}});
+    const CutPolygon bow = cut_polygon(Points{{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 1, 0}});
     EXPECT_FALSE(bow.is_simple);
     EXPECT_EQ(bow.triangles.size(), 2u);
-    EXPECT_EQ(cut_polygon(Corners{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}).triangles.size(), 2u);
+    EXPECT_EQ(cut_polygon(Points{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}).triangles.size(), 2u);
     const MeshSoup soup = parse_mesh("a.obj", "v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 1 0\nf 1 2 3 4\n");
     ASSERT_EQ(soup.notes.size(), 1u);
     EXPECT_TRUE(contains(soup.notes[0], "1 polygons cross or overlap themselves"));

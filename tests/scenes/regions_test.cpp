@@ -5,6 +5,7 @@
 #include "scenes/optimise/regions.h"
 #include "scenes/optimise/vertex_move.h"
 #include "scenes/procedural.h"
+#include "tests/scenes/edited_mesh.h"
 #include "tests/support/random.h"
 #include "tests/support/sound_tets.h"
 
@@ -17,12 +18,6 @@ using namespace tetrace;
 using namespace tetrace::test;
 
 namespace {
-
-const Scene& cubes()
-{
-    static const Scene scene = make_cubes(8);
-    return scene;
-}
 
 std::vector<Region> all_regions(const MeshArrays& mesh, std::uint32_t pass, std::size_t max_tets)
 {

@@ -14,7 +14,7 @@ namespace {
 using Samples = std::vector<double>;
 using Random = std::mt19937_64;
 
-/// Draws one time around a second.
+/// Draws one time eleven_around a second.
 using Noise = std::function<double(Random&)>;
 
 Noise normal(double relative)
@@ -70,7 +70,7 @@ SpeedVerdict verdict_of(const Samples& before, const Samples& after, double tole
     return compare_speed(before, after, 1, tolerance).verdict;
 }
 
-Samples around(double seconds, double relative)
+Samples eleven_around(double seconds, double relative)
 {
     Samples samples;
     for (int i = -5; i <= 5; ++i)
@@ -134,15 +134,15 @@ TEST(SpeedVerdict, hardly_ever_calls_the_same_what_differs_by_more_than_the_tole
 
 TEST(SpeedVerdict, is_same_within_the_tolerance_even_where_a_difference_is_certain)
 {
-    EXPECT_EQ(verdict_of(around(1, 0.001), around(1.01, 0.001), 0.03), SpeedVerdict::same);
-    EXPECT_EQ(verdict_of(around(1, 0.001), around(1.01, 0.001), 0.005), SpeedVerdict::slower);
-    EXPECT_EQ(verdict_of(around(1.01, 0.001), around(1, 0.001), 0.005), SpeedVerdict::faster);
+    EXPECT_EQ(verdict_of(eleven_around(1, 0.001), eleven_around(1.01, 0.001), 0.03), SpeedVerdict::same);
+    EXPECT_EQ(verdict_of(eleven_around(1, 0.001), eleven_around(1.01, 0.001), 0.005), SpeedVerdict::slower);
+    EXPECT_EQ(verdict_of(eleven_around(1.01, 0.001), eleven_around(1, 0.001), 0.005), SpeedVerdict::faster);
 }
 
 TEST(SpeedVerdict, is_unsure_where_noise_hides_more_than_the_tolerance)
 {
-    EXPECT_EQ(verdict_of(around(1, 0.2), around(1.01, 0.2), 0.03), SpeedVerdict::unsure);
-    EXPECT_EQ(verdict_of(around(1, 0.2), around(1.01, 0.2), 1), SpeedVerdict::same);
+    EXPECT_EQ(verdict_of(eleven_around(1, 0.2), eleven_around(1.01, 0.2), 0.03), SpeedVerdict::unsure);
+    EXPECT_EQ(verdict_of(eleven_around(1, 0.2), eleven_around(1.01, 0.2), 1), SpeedVerdict::same);
 }
 
 TEST(SpeedVerdict, ratio_is_that_of_the_medians_and_lies_in_its_interval)
@@ -185,7 +185,8 @@ TEST(SpeedVerdict, takes_the_smallest_error_that_few_samples_allow)
 TEST(SpeedVerdict, is_a_regression_only_over_the_tolerance)
 {
     const auto regressed = [](double seconds, double tolerance) {
-        return compare_speed(around(1, 0.004), around(seconds, 0.004), 1, tolerance).is_regression(tolerance);
+        return compare_speed(eleven_around(1, 0.004), eleven_around(seconds, 0.004), 1, tolerance)
+            .is_regression(tolerance);
     };
     EXPECT_TRUE(regressed(1.06, 0.05));
     EXPECT_FALSE(regressed(1.049, 0.05));

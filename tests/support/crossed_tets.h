@@ -70,4 +70,23 @@ private:
     std::vector<std::uint32_t> mesh_of_packed_;
 };
 
+/// A neighbour of a tet that the walk does not cross; NO_TET if there is none.
+[[nodiscard]] inline std::uint32_t other_neighbour(const Scene& scene, const CrossedScene& tets,
+                                                   const CrossedTets& walk, std::uint32_t tet)
+{
+    for (const std::uint32_t across : scene.tets.tets[tets.mesh_of_packed()[tet]].neighbours) {
+        if (across == NO_HALF_FACE) continue;
+        const std::uint32_t other = tets.packed().packed_of_mesh[half_face_tet(across)];
+        if (std::ranges::find(walk.tets, other) == walk.tets.end()) return other;
+    }
+    return NO_TET;
+}
+
+/// Leaves out a tet of a walk, and the place where the walk leaves it.
+inline void drop(CrossedTets& walk, std::size_t i)
+{
+    walk.tets.erase(walk.tets.begin() + static_cast<std::ptrdiff_t>(i));
+    walk.places.erase(walk.places.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+}
+
 } // namespace tetrace::test

@@ -64,23 +64,6 @@ bool is_accepted(const CrossedScene& tets, const RaySet& set, std::size_t ray, c
     return tets.judged(one, {as_hit(answer)}, {walk}).clean();
 }
 
-/// A neighbour of a tet that the walk does not cross; NO_TET if there is none.
-std::uint32_t other_neighbour(const Scene& scene, const CrossedScene& tets, const CrossedTets& walk, std::uint32_t tet)
-{
-    for (const std::uint32_t across : scene.tets.tets[tets.mesh_of_packed()[tet]].neighbours) {
-        if (across == NO_HALF_FACE) continue;
-        const std::uint32_t other = tets.packed().packed_of_mesh[half_face_tet(across)];
-        if (std::ranges::find(walk.tets, other) == walk.tets.end()) return other;
-    }
-    return NO_TET;
-}
-
-void drop(CrossedTets& walk, std::size_t i)
-{
-    walk.tets.erase(walk.tets.begin() + static_cast<std::ptrdiff_t>(i));
-    walk.places.erase(walk.places.begin() + static_cast<std::ptrdiff_t>(i) + 1);
-}
-
 } // namespace
 
 TEST(Absorption, of_hard_rays_is_right_for_each_kernel_and_the_same_on_all_layouts)

@@ -75,24 +75,6 @@ constexpr std::array<const char*, 7> mistakes = {"left out",   "twice",       "e
 
 using Walk = CrossedTets;
 
-void drop(Walk& walk, std::size_t i)
-{
-    walk.tets.erase(walk.tets.begin() + static_cast<std::ptrdiff_t>(i));
-    walk.places.erase(walk.places.begin() + static_cast<std::ptrdiff_t>(i) + 1);
-}
-
-/// A neighbour of a tet that the walk does not cross.
-std::optional<std::uint32_t> other_neighbour(const Scene& scene, const CrossedScene& tets, const Walk& walk,
-                                             std::uint32_t tet)
-{
-    for (const std::uint32_t across : scene.tets.tets[tets.mesh_of_packed()[tet]].neighbours) {
-        if (across == NO_HALF_FACE) continue;
-        const std::uint32_t other = tets.packed().packed_of_mesh[half_face_tet(across)];
-        if (std::ranges::find(walk.tets, other) == walk.tets.end()) return other;
-    }
-    return std::nullopt;
-}
-
 /// The walk with a mistake at a tet; empty if it cannot be made there.
 std::optional<Walk> falsified(const Scene& scene, const CrossedScene& tets, Walk walk, Mistake mistake, std::size_t i)
 {
@@ -105,14 +87,14 @@ std::optional<Walk> falsified(const Scene& scene, const CrossedScene& tets, Walk
         break;
     case Mistake::exchanged: {
         const auto other = other_neighbour(scene, tets, walk, walk.tets[i]);
-        if (!other) return std::nullopt;
-        walk.tets[i] = *other;
+        if (other == NO_TET) return std::nullopt;
+        walk.tets[i] = other;
         break;
     }
     case Mistake::appended: {
         const auto other = other_neighbour(scene, tets, walk, walk.tets.back());
-        if (!other) return std::nullopt;
-        walk.tets.push_back(*other);
+        if (other == NO_TET) return std::nullopt;
+        walk.tets.push_back(other);
         walk.places.push_back(walk.places.back());
         break;
     }

@@ -11,13 +11,13 @@ using namespace tetrace;
 
 namespace {
 
-constexpr Hit right{0, 7, 1.0f, 0.25f, 0.5f, 3};
+constexpr Hit right_hit{0, 7, 1.0f, 0.25f, 0.5f, 3};
 
 } // namespace
 
 TEST(CompareHits, equal_hits_do_not_differ)
 {
-    const std::vector<Hit> hits = {right, {NO_HIT, 3, 0, 0, 0, 9}};
+    const std::vector<Hit> hits = {right_hit, {NO_HIT, 3, 0, 0, 0, 9}};
     const Differences found = compare_hits(hits, hits, {});
     EXPECT_EQ(found.count, 0u);
     EXPECT_EQ(found.inexact, 0u);
@@ -26,9 +26,9 @@ TEST(CompareHits, equal_hits_do_not_differ)
 TEST(CompareHits, face_tet_and_steps_must_be_the_same_bits)
 {
     for (std::uint32_t Hit::*member : {&Hit::face_id, &Hit::tet, &Hit::steps}) {
-        std::vector<Hit> hits(5, right);
+        std::vector<Hit> hits(5, right_hit);
         hits[3].*member += 1;
-        const Differences found = compare_hits(hits, std::vector<Hit>(5, right), {.ulps = 3});
+        const Differences found = compare_hits(hits, std::vector<Hit>(5, right_hit), {.ulps = 3});
         EXPECT_EQ(found.count, 1u);
         EXPECT_EQ(found.first, 3u);
     }
@@ -37,14 +37,14 @@ TEST(CompareHits, face_tet_and_steps_must_be_the_same_bits)
 TEST(CompareHits, parameters_may_differ_by_the_units_allowed_and_no_more)
 {
     for (float Hit::*member : {&Hit::t, &Hit::u, &Hit::v}) {
-        std::vector<Hit> hits(1, right);
+        std::vector<Hit> hits(1, right_hit);
         for (unsigned ulp = 1; ulp <= 4; ++ulp) {
             hits[0].*member = std::nextafter(hits[0].*member, 2.0f);
-            const Differences found = compare_hits(hits, std::vector<Hit>(1, right), {.ulps = 3});
+            const Differences found = compare_hits(hits, std::vector<Hit>(1, right_hit), {.ulps = 3});
             EXPECT_EQ(found.count, ulp <= 3 ? 0u : 1u) << ulp;
             EXPECT_EQ(found.inexact, 1u);
             EXPECT_EQ(found.max_ulps, ulp <= 3 ? ulp : 0u);
-            EXPECT_EQ(compare_hits(hits, std::vector<Hit>(1, right), {}).count, 1u);
+            EXPECT_EQ(compare_hits(hits, std::vector<Hit>(1, right_hit), {}).count, 1u);
         }
     }
 }
@@ -88,7 +88,7 @@ TEST(UlpsBetween, counts_floats_between_and_knows_signs)
 TEST(CountRays, reports_the_outcome_of_each)
 {
     const std::vector<Hit> hits = {
-        right, right, {NO_HIT, 0, 0, 0, 0, 5}, {LOST, 0, 0, 0, 0, 100}, {POISON, 0, 0, 0, 0, 0}};
+        right_hit, right_hit, {NO_HIT, 0, 0, 0, 0, 5}, {LOST, 0, 0, 0, 0, 100}, {POISON, 0, 0, 0, 0, 0}};
     RayTotals totals = count_rays(hits);
     totals.add(count_rays(hits));
     EXPECT_EQ(totals.rays, 10u);

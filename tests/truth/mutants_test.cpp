@@ -26,14 +26,14 @@ std::string why_not(const std::string& name)
     return "unknown backend " + name;
 }
 
-struct Ended {
+struct MutantRun {
     int code = -1;
     std::string out;
     nlohmann::json json;
 };
 
 /// Checks one backend on a small scene with a program of the build folder.
-Ended check(const std::string& program, const std::string& backend, const std::string& task)
+MutantRun check(const std::string& program, const std::string& backend, const std::string& task)
 {
     const TemporaryFolder folder;
     const std::string path = folder.path().string();
@@ -43,7 +43,7 @@ Ended check(const std::string& program, const std::string& backend, const std::s
             "--size 48 --views 0,2 --task {4} --out result.json > out 2> errors",
             path, TETRACE_PROGRAMS, program, backend, task)
             .c_str());
-    Ended ended{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"), {}};
+    MutantRun ended{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"), {}};
     ended.json = nlohmann::json::parse(read_text(folder / "result.json"), nullptr, false);
     EXPECT_FALSE(ended.json.is_discarded()) << read_text(folder / "errors");
     return ended;
@@ -82,9 +82,9 @@ TEST_P(Mutants, are_found_and_named_where_the_right_kernel_passes)
 {
     const std::string backend = GetParam().backend;
     if (const std::string reason = why_not(backend); !reason.empty()) GTEST_SKIP() << reason;
-    const Ended right = check("tetrace", backend, GetParam().task);
+    const MutantRun right = check("tetrace", backend, GetParam().task);
     EXPECT_EQ(right.code, 0) << right.out;
-    const Ended wrong = check(std::string("tetrace_mutant_") + GetParam().name, backend, GetParam().task);
+    const MutantRun wrong = check(std::string("tetrace_mutant_") + GetParam().name, backend, GetParam().task);
     EXPECT_EQ(wrong.code, 1) << wrong.out;
     EXPECT_TRUE(contains(wrong.out, GetParam().kernel + ("/cubes/primary/math:exact/api:" + backend)));
     EXPECT_TRUE(contains(wrong.out, "rays differ from openmp's, the first at view"));

@@ -26,11 +26,11 @@ using namespace tetrace::test;
 namespace {
 
 enum class Layers { parallel, tilted, crossing, folded };
-constexpr std::array<const char*, 4> kinds{"parallel", "tilted", "crossing", "folded"};
-constexpr int cells = 4;
+constexpr std::array<const char*, 4> layer_kinds{"parallel", "tilted", "crossing", "folded"};
+constexpr int layer_cells = 4;
 constexpr std::uint32_t rays_per_pair = 512;
 
-/// Two layers of cells x cells squares, each cut into two triangles, and the frame that they were made in.
+/// Two layers of layer_cells x layer_cells squares, each cut into two triangles, and the frame that they were made in.
 struct Pair {
     TriangleMesh mesh;
     Double3 corner{}, along{}, across{}, normal{};
@@ -60,7 +60,7 @@ Pair make_pair(Layers kind, int ulps, std::uint64_t seed)
     const Double3 size{std::abs(pair.normal.x), std::abs(pair.normal.y), std::abs(pair.normal.z)};
     const bool is_x = size.x >= std::max(size.y, size.z), is_y = !is_x && size.y >= size.z;
     const auto heights = [&] {
-        std::array<double, (cells + 1) * (cells + 1)> result{};
+        std::array<double, (layer_cells + 1) * (layer_cells + 1)> result{};
         for (double& height : result)
             height = kind == Layers::folded ? random.between(-0.1f, 0.1f) : 0;
         return result;
@@ -68,12 +68,12 @@ Pair make_pair(Layers kind, int ulps, std::uint64_t seed)
     const bool swapped = random.below(2) == 0;
     for (int layer = 0; layer < 2; ++layer) {
         const auto first = static_cast<std::uint32_t>(pair.mesh.vertices.size());
-        for (int i = 0; i <= cells; ++i)
-            for (int j = 0; j <= cells; ++j) {
-                const double height = heights[static_cast<std::size_t>(i * (cells + 1) + j)];
-                const Double3 at = pair.corner + pair.along * (double{1} / cells * i) +
-                                   pair.across * (double{1} / cells * j) + pair.normal * height;
-                const int apart = kind == Layers::tilted ? 1 + (ulps - 1) * i / cells
+        for (int i = 0; i <= layer_cells; ++i)
+            for (int j = 0; j <= layer_cells; ++j) {
+                const double height = heights[static_cast<std::size_t>(i * (layer_cells + 1) + j)];
+                const Double3 at = pair.corner + pair.along * (double{1} / layer_cells * i) +
+                                   pair.across * (double{1} / layer_cells * j) + pair.normal * height;
+                const int apart = kind == Layers::tilted ? 1 + (ulps - 1) * i / layer_cells
                                   : kind == Layers::crossing
                                       ? (i < 2 ? -1 : 1) * std::max(1, ulps * std::abs(i - 2) / 2)
                                       : ulps;
@@ -84,10 +84,10 @@ Pair make_pair(Layers kind, int ulps, std::uint64_t seed)
                                         rounded.z + (is_x || is_y ? 0 : moved)}));
             }
         const bool other_diagonal = random.below(2) == 0;
-        for (int i = 0; i < cells; ++i)
-            for (int j = 0; j < cells; ++j) {
-                const auto a = first + static_cast<std::uint32_t>(i * (cells + 1) + j), b = a + 1;
-                const std::uint32_t c = a + cells + 1, d = c + 1;
+        for (int i = 0; i < layer_cells; ++i)
+            for (int j = 0; j < layer_cells; ++j) {
+                const auto a = first + static_cast<std::uint32_t>(i * (layer_cells + 1) + j), b = a + 1;
+                const std::uint32_t c = a + layer_cells + 1, d = c + 1;
                 pair.mesh.triangles.push_back(other_diagonal ? std::array{a, b, c} : std::array{a, b, d});
                 pair.mesh.triangles.push_back(other_diagonal ? std::array{b, d, c} : std::array{a, d, c});
             }
@@ -145,10 +145,10 @@ Backend* backend_of(const KernelId& kernel)
     return is_embree(kernel.layout) ? &embree_backend() : &vulkan_backend();
 }
 
-class Campaign {
+class LayerCampaign {
 public:
     /// all: other structures too, and what the repair makes of the layers.
-    explicit Campaign(bool all) : all_(all) {}
+    explicit LayerCampaign(bool all) : all_(all) {}
 
     void judge(Layers kind, int ulps, std::uint64_t seed)
     {
@@ -157,7 +157,8 @@ public:
         if (kind != Layers::folded) {
             for (const auto& [name, wrong] : as_made_)
                 EXPECT_TRUE(!name.starts_with("ours") || wrong[static_cast<std::size_t>(kind)] == 0)
-                    << name << ", " << kinds[static_cast<std::size_t>(kind)] << ", " << ulps << " ulps, seed " << seed;
+                    << name << ", " << layer_kinds[static_cast<std::size_t>(kind)] << ", " << ulps << " ulps, seed "
+                    << seed;
         }
         if (!all_) return;
         const LoadedScene loaded = scene_of(pair.mesh, folder_);
@@ -170,7 +171,8 @@ public:
     void print() const
     {
         for (const auto& [title, table] : {std::pair{"as made", &as_made_}, {"as a scene", &as_scene_}}) {
-            fmt::print("{:32} {:>9} {:>9} {:>9} {:>9}\n", title, kinds[0], kinds[1], kinds[2], kinds[3]);
+            fmt::print("{:32} {:>9} {:>9} {:>9} {:>9}\n", title, layer_kinds[0], layer_kinds[1], layer_kinds[2],
+                       layer_kinds[3]);
             for (const auto& [name, wrong] : *table)
                 fmt::print("{:32} {:9} {:9} {:9} {:9}\n", name, wrong[0], wrong[1], wrong[2], wrong[3]);
         }
@@ -179,7 +181,7 @@ public:
     }
 
 private:
-    using Counts = std::array<std::uint64_t, kinds.size()>;
+    using Counts = std::array<std::uint64_t, layer_kinds.size()>;
     using Table = std::map<std::string, Counts>;
     /// Most kernels answer alike, so each answer is judged once.
     struct Judged {
@@ -235,7 +237,7 @@ TEST(NearLayers, are_told_apart_by_every_bvh)
 {
     const char* const text = std::getenv("TETRACE_CAMPAIGN");
     const std::uint64_t pairs = text == nullptr ? 2 : std::strtoull(text, nullptr, 10);
-    Campaign campaign(text != nullptr);
+    LayerCampaign campaign(text != nullptr);
     for (const Layers kind : {Layers::parallel, Layers::tilted, Layers::crossing, Layers::folded}) {
         if (kind == Layers::folded && text == nullptr) continue; // nothing is claimed of BVHs there
         for (int ulps = 1; ulps <= 64; ulps *= 2)

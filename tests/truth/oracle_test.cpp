@@ -24,13 +24,13 @@ namespace {
 
 constexpr std::uint32_t size = 128;
 
-struct Traced {
+struct SpoiltImage {
     Scene scene = make_cubes(9);
     PackedScene packed = pack(scene, Layout::tet80, TetOrder::chains);
     TraceJob job;
     std::vector<Hit> hits = std::vector<Hit>(std::size_t{size} * size);
 
-    explicit Traced(Float3 camera_shift = {})
+    explicit SpoiltImage(Float3 camera_shift = {})
     {
         Camera camera = make_cameras(CameraSet::smoke, scene.mesh).front();
         for (int axis = 0; axis < 3; ++axis)
@@ -60,7 +60,7 @@ struct Traced {
 
 TEST(Oracle, agrees_with_the_walk_on_cubes)
 {
-    const Verdicts verdicts = Traced().judged();
+    const Verdicts verdicts = SpoiltImage().judged();
     EXPECT_EQ(verdicts.rays, std::uint64_t{size} * size);
     EXPECT_EQ(verdicts.agreed + verdicts.ties + verdicts.settled, verdicts.rays);
     EXPECT_TRUE(verdicts.clean());
@@ -71,7 +71,7 @@ namespace {
 template <class Spoil>
 Verdicts verdicts_after(const Spoil& spoil)
 {
-    Traced traced;
+    SpoiltImage traced;
     EXPECT_LT(traced.hits[traced.hit_pixel()].face_id, traced.scene.mesh.triangles.size())
         << "the middle pixel must hit";
     spoil(traced.hits[traced.hit_pixel()]);
@@ -106,8 +106,8 @@ TEST(Oracle, t_u_and_v_must_name_one_point)
 
 TEST(Oracle, the_other_view_is_traced_anew)
 {
-    Traced first;
-    const Traced second({0.25f, 0, 0});
+    SpoiltImage first;
+    const SpoiltImage second({0.25f, 0, 0});
     Oracle oracle(first.scene.mesh, 2);
     EXPECT_TRUE(oracle.judge(0, first.job.view, size, size, first.hits).clean());
     EXPECT_TRUE(oracle.judge(1, second.job.view, size, size, second.hits).clean());
@@ -116,7 +116,7 @@ TEST(Oracle, the_other_view_is_traced_anew)
 
 TEST(Walk, cameras_on_vertices_edges_and_faces_see_what_the_exact_rays_meet)
 {
-    Traced traced;
+    SpoiltImage traced;
     const TetMesh& mesh = traced.scene.tets;
     Oracle oracle(traced.scene.mesh, 2);
     for (std::uint32_t index = 0; index < mesh.tets.size(); index += 401) {
@@ -136,7 +136,7 @@ TEST(Walk, cameras_on_vertices_edges_and_faces_see_what_the_exact_rays_meet)
 
 TEST(Walk, a_ray_at_its_cap_of_steps_is_lost)
 {
-    Traced traced;
+    SpoiltImage traced;
     traced.job.max_steps = 3;
     traced.trace({Structure::cdt, Method::maria, Layout::tet80, MathMode::exact});
     EXPECT_EQ(traced.hits[traced.hit_pixel()].face_id, LOST);
@@ -146,7 +146,7 @@ TEST(Walk, a_ray_at_its_cap_of_steps_is_lost)
 
 TEST(Walk, layouts_and_threads_do_not_change_a_bit)
 {
-    Traced traced;
+    SpoiltImage traced;
     const auto reference = traced.hits;
     traced.packed = pack(traced.scene, Layout::tet96, TetOrder::chains);
     traced.trace({Structure::cdt, Method::maria, Layout::tet96, MathMode::exact});
@@ -165,7 +165,7 @@ namespace {
 TEST(Walk, a_thread_that_flushes_denormals_is_set_back)
 {
     constexpr KernelId kernel{Structure::cdt, Method::maria, Layout::tet80, MathMode::exact};
-    Traced tiny;
+    SpoiltImage tiny;
     const auto shrink = [](std::uint32_t& bits) {
         bits = std::bit_cast<std::uint32_t>(std::bit_cast<float>(bits) * 0x1p-66f);
     };
@@ -194,7 +194,7 @@ TEST(Walk, a_thread_that_flushes_denormals_is_set_back)
 
 TEST(Walk, order_of_tets_changes_their_numbers_only)
 {
-    Traced traced;
+    SpoiltImage traced;
     const auto reference = traced.hits;
     traced.packed = pack(traced.scene, Layout::tet80, TetOrder::input);
     traced.place();
@@ -208,7 +208,7 @@ TEST(Walk, order_of_tets_changes_their_numbers_only)
 
 TEST(Walk, fast_math_answers_stay_right_on_cubes)
 {
-    Traced traced;
+    SpoiltImage traced;
     const KernelId fast{Structure::cdt, Method::maria, Layout::tet80, MathMode::fast};
     if (const auto reason = openmp_backend().why_not(0, fast); !reason.empty()) GTEST_SKIP() << reason;
     traced.trace(fast);
@@ -217,7 +217,7 @@ TEST(Walk, fast_math_answers_stay_right_on_cubes)
 
 TEST(WalkPath, ends_in_the_tet_of_the_hit_and_goes_from_neighbour_to_neighbour)
 {
-    const Traced traced;
+    const SpoiltImage traced;
     const Hit& hit = traced.hits[traced.hit_pixel()];
     const auto path = walk_path(traced.packed, {Structure::cdt, Method::maria, Layout::tet80, MathMode::exact},
                                 traced.job, size / 2, size / 2);

@@ -21,7 +21,7 @@ using namespace tetrace::test;
 
 namespace {
 
-constexpr std::uint32_t size = 96;
+constexpr std::uint32_t image_size = 96;
 constexpr std::size_t given_rays = 16'384;
 
 /// A scene in TetGen's tets, and in those for rays.
@@ -40,18 +40,20 @@ Both both_of(const std::string& name)
 }
 
 /// A scene, packed for a method; its walks on openmp.
-class Traced {
+class TracedImage {
 public:
-    Traced(const Scene& scene, Method method) : scene_(scene), method_(method), packed_(pack(scene, layout, order)) {}
+    TracedImage(const Scene& scene, Method method) : scene_(scene), method_(method), packed_(pack(scene, layout, order))
+    {
+    }
 
     [[nodiscard]] std::vector<Hit> image(const Camera& camera) const
     {
         TraceJob job;
-        job.view = make_view(camera, size, size);
+        job.view = make_view(camera, image_size, image_size);
         const Start start = find_start(scene_, job.view.origin);
         job.view.origin = start.origin;
         start_in(job, packed_, scene_, start.tet);
-        job.width = job.height = size;
+        job.width = job.height = image_size;
         job.max_steps = packed_.tet_count + 1;
         return traced(*open(Task::trace), job);
     }
@@ -80,11 +82,12 @@ private:
 /// The rays of an image as exact arithmetic takes them, by pixel.
 std::vector<ExactRay> exact_rays(const Scene& scene, const Camera& camera)
 {
-    View view = make_view(camera, size, size);
+    View view = make_view(camera, image_size, image_size);
     const Start start = find_start(scene, view.origin);
     view.origin = start.origin;
-    std::vector<ExactRay> rays(std::size_t{size} * size);
-    for (const GivenRay& ray : make_rays(RayKind::primary, {scene, 0, view, size, size, start.tet, {}, {}}).rays)
+    std::vector<ExactRay> rays(std::size_t{image_size} * image_size);
+    for (const GivenRay& ray :
+         make_rays(RayKind::primary, {scene, 0, view, image_size, image_size, start.tet, {}, {}}).rays)
         rays[ray.pixel] = {ray.origin, ray.direction};
     return rays;
 }
@@ -106,7 +109,7 @@ RaySet whole_lines(const Scene& scene, Method method)
 
 /// Rays that two builds of a scene answer with different triangles, and those of them for which an answer is neither
 /// the exact ray's nor has a witness. A lost ray is wrong.
-struct Differences {
+struct SceneDifferences {
     std::uint64_t ties = 0, wrong = 0;
     std::string first; ///< of the wrong ones
 };
@@ -115,7 +118,7 @@ class Comparison {
 public:
     explicit Comparison(const TriangleMesh& mesh) : search_(mesh), settler_(mesh, search_) {}
 
-    void add(Differences& found, const ExactRay& ray, const Hit& plain, const Hit& optimised) const
+    void add(SceneDifferences& found, const ExactRay& ray, const Hit& plain, const Hit& optimised) const
     {
         if (plain.face_id == optimised.face_id && plain.face_id != LOST) return;
         for (const Hit& hit : {plain, optimised}) {
@@ -138,12 +141,13 @@ private:
 };
 
 /// Of whole lines.
-Differences differences_of_lines(const Both& scenes, Method method)
+SceneDifferences differences_of_lines(const Both& scenes, Method method)
 {
     const RaySet set = whole_lines(scenes.plain, method);
     const Comparison comparison(scenes.plain.mesh);
-    const auto before = Traced(scenes.plain, method).given(set), after = Traced(scenes.optimised, method).given(set);
-    Differences found;
+    const auto before = TracedImage(scenes.plain, method).given(set),
+               after = TracedImage(scenes.optimised, method).given(set);
+    SceneDifferences found;
     for (std::size_t i = 0; i < set.rays.size(); ++i)
         comparison.add(found, {set.rays[i].origin, set.rays[i].direction}, before[i], after[i]);
     return found;
@@ -173,27 +177,28 @@ TEST_P(RaysTetsOf, give_the_same_hits_in_fewer_steps)
     Oracle oracle(scenes.plain.mesh, 2);
     for (const Method method : {Method::maria, Method::project}) {
         SCOPED_TRACE(name_of(method));
-        const Traced plain(scenes.plain, method), optimised(scenes.optimised, method);
+        const TracedImage plain(scenes.plain, method), optimised(scenes.optimised, method);
         std::uint64_t steps_before = 0, steps_after = 0;
-        Differences found;
+        SceneDifferences found;
         for (const Camera& camera : make_cameras(CameraSet::smoke, scenes.plain.mesh)) {
             const auto before = plain.image(camera), after = optimised.image(camera);
             const auto rays = exact_rays(scenes.plain, camera);
             for (std::size_t i = 0; i < rays.size(); ++i)
                 comparison.add(found, rays[i], before[i], after[i]);
-            EXPECT_TRUE(oracle.judge(0, make_view(camera, size, size), size, size, after).clean());
+            EXPECT_TRUE(
+                oracle.judge(0, make_view(camera, image_size, image_size), image_size, image_size, after).clean());
             steps_before += steps_of(before);
             steps_after += steps_of(after);
         }
         EXPECT_EQ(found.wrong, 0u) << found.first;
         EXPECT_LT(steps_after, steps_before);
-        const Differences lines = differences_of_lines(scenes, method);
+        const SceneDifferences lines = differences_of_lines(scenes, method);
         EXPECT_EQ(lines.wrong, 0u) << lines.first;
         if (method == Method::maria) {
             EXPECT_GT(lines.ties, 0u) << "no witness was looked for";
         }
         fmt::print("{}, {}: ties that go the other way: {} of {} primary rays, {} of {} lines\n", name, name_of(method),
-                   found.ties, 4 * size * size, lines.ties, given_rays);
+                   found.ties, 4 * image_size * image_size, lines.ties, given_rays);
     }
 }
 

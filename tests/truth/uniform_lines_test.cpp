@@ -18,9 +18,9 @@ namespace {
 constexpr std::uint32_t seeds = 48;
 
 /// Uniform lines through the cubes. size: of the image for whose pixels they are made.
-class Lines {
+class LinesThroughScene {
 public:
-    Lines(std::uint32_t resolution, std::uint32_t size)
+    LinesThroughScene(std::uint32_t resolution, std::uint32_t size)
         : given_(size, false, resolution), tets_(given_.scene, Method::project, Layout::half32)
     {
     }
@@ -96,7 +96,7 @@ Spread spread_of(const std::vector<double>& values)
 
 TEST(UniformLines, have_the_mean_length_of_integral_geometry_in_each_tet)
 {
-    const Lines lines(6, 128);
+    const LinesThroughScene lines(6, 128);
     auto walks = lines.walks(RayKind::random);
     const LineTest right = lines.tested(walks);
     EXPECT_EQ(right.lines, 128u * 128);
@@ -116,7 +116,7 @@ TEST(UniformLines, have_the_mean_length_of_integral_geometry_in_each_tet)
 // Every second tet's lengths are those of the one before it in memory, its neighbour mostly, and of the same group.
 TEST(UniformLines, show_a_tally_into_the_neighbours_cells)
 {
-    const Lines lines(6, 64);
+    const LinesThroughScene lines(6, 64);
     auto walks = lines.walks(RayKind::random);
     EXPECT_TRUE(lines.tested(walks).passes());
     for (CrossedTets& walk : walks)
@@ -129,7 +129,7 @@ TEST(UniformLines, show_a_tally_into_the_neighbours_cells)
 
 TEST(UniformLines, show_a_single_tet_whose_lengths_its_neighbour_has)
 {
-    const Lines lines(3, 128);
+    const LinesThroughScene lines(3, 128);
     auto walks = lines.walks(RayKind::random);
     const auto [tet, neighbour] = lines.most_crossed(walks);
     ASSERT_NE(tet, neighbour);
@@ -144,7 +144,7 @@ TEST(UniformLines, show_a_single_tet_whose_lengths_its_neighbour_has)
 
 TEST(UniformLines, show_a_single_tet_whose_lengths_are_five_percent_wrong)
 {
-    const Lines lines(2, 768);
+    const LinesThroughScene lines(2, 768);
     auto walks = lines.walks(RayKind::random);
     const std::uint32_t tet = lines.most_crossed(walks).first;
     const LineTest right = lines.tested(walks);
@@ -160,7 +160,7 @@ TEST(UniformLines, show_a_single_tet_whose_lengths_are_five_percent_wrong)
 // As many lines as the page has for each scene: in tets and in groups 5 % is within the noise.
 TEST(UniformLines, show_in_the_domain_what_is_small_everywhere)
 {
-    const Lines lines(9, 90);
+    const LinesThroughScene lines(9, 90);
     auto walks = lines.walks(RayKind::random);
     const LineTest right = lines.tested(walks);
     EXPECT_TRUE(right.passes()) << text_of(right);
@@ -175,7 +175,7 @@ TEST(UniformLines, show_in_the_domain_what_is_small_everywhere)
 // A tenth more in half of the domain: tets by themselves have the noise of few crossings each.
 TEST(UniformLines, show_in_groups_what_is_small_in_each_tet)
 {
-    const Lines lines(12, 128);
+    const LinesThroughScene lines(12, 128);
     auto walks = lines.walks(RayKind::random);
     const std::size_t half = lines.tested(walks).tets.cells / 2;
     for (CrossedTets& walk : walks)
@@ -190,7 +190,7 @@ TEST(UniformLines, show_in_groups_what_is_small_in_each_tet)
 TEST(UniformLines, are_off_by_one_standard_deviation_whatever_the_number_of_crossings)
 {
     for (const auto& [resolution, size] : {std::pair{9u, 24u}, std::pair{6u, 32u}, std::pair{2u, 32u}}) {
-        const Lines lines(resolution, size);
+        const LinesThroughScene lines(resolution, size);
         std::vector<double> domain, tets, groups;
         for (std::uint32_t seed = 0; seed < seeds; ++seed) {
             const LineTest test = lines.tested(lines.walks(RayKind::random, seed));
@@ -211,13 +211,13 @@ TEST(UniformLines, are_off_by_one_standard_deviation_whatever_the_number_of_cros
 
 TEST(UniformLines, other_rays_do_not_have_it)
 {
-    const Lines lines(6, 64);
+    const LinesThroughScene lines(6, 64);
     EXPECT_FALSE(lines.tested(lines.walks(RayKind::primary)).passes());
 }
 
 TEST(UniformLines, are_not_judged_if_they_are_few)
 {
-    const Lines lines(6, 8);
+    const LinesThroughScene lines(6, 8);
     const LineTest few = lines.tested(lines.walks(RayKind::random));
     EXPECT_EQ(few.lines, 64u);
     EXPECT_FALSE(few.is_testable());

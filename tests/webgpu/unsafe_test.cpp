@@ -72,7 +72,7 @@ Hit answer_of(RunItem* run, const std::vector<SceneBuffer>& arrays, const TraceJ
     return hit;
 }
 
-struct Differences {
+struct UnsafeDifferences {
     std::uint64_t rays = 0, kept = 0, plain = 0, rough = 0;
 };
 
@@ -81,7 +81,7 @@ bool is_same(const Hit& a, const Hit& b)
     return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-void compare(const Text& text, const Scene& scene, const PackedScene& packed, Differences& found)
+void compare(const Text& text, const Scene& scene, const PackedScene& packed, UnsafeDifferences& found)
 {
     const auto session = openmp_backend().open(0, text.kernel, {&scene.mesh, &packed}, {.threads = 1});
     const HardRays hard(scene);
@@ -114,7 +114,7 @@ TEST(UnsafeMath, changes_no_word_of_what_is_kept_and_some_of_what_is_not)
          project_tet64_rough},
         {{.method = Method::maria, .layout = Layout::tet80}, maria_tet80_kept, maria_tet80_plain, maria_tet80_rough}};
     for (const Text& text : texts) {
-        Differences found;
+        UnsafeDifferences found;
         for (const auto& [name, scene] : make_hard_scenes())
             compare(text, scene, pack(scene, text.kernel.layout, TetOrder::chains), found);
         EXPECT_GE(found.rays, 5 * lines);
@@ -136,7 +136,7 @@ TEST(UnsafeMath, changes_no_word_of_bvhs_that_are_kept)
                            single_cwbvh_plain,
                            single_cwbvh_rough}};
     for (const Text& text : texts) {
-        Differences found;
+        UnsafeDifferences found;
         for (const auto& [name, scene] : make_hard_scenes())
             compare(text, scene, make_bvh_scene(scene.mesh, text.kernel.layout), found);
         EXPECT_EQ(found.kept, 0u) << name_of(text.kernel.layout) << " of " << found.rays;
