@@ -26,7 +26,7 @@ protected:
     }
 };
 
-const std::string one_backend = " --backend openmp --one_backend cubes --resolution 6 --threads 1";
+const std::string one_backend = " --backend openmp --scene cubes --resolution 6 --threads 1";
 
 } // namespace
 

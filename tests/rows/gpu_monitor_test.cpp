@@ -39,7 +39,7 @@ protected:
     [[nodiscard]] GpuState told() const { return amdgpu_monitor(gpu("", gpu_pci), root_.path())->read(); }
 
     TemporaryFolder root_;
-    fs::path folder_ = root_ / "bus/gpu_pci/devices" / gpu_pci;
+    fs::path folder_ = root_ / "bus/pci/devices" / gpu_pci;
 };
 
 } // namespace

@@ -170,7 +170,7 @@ TEST_F(Gltf, reads_buffers_in_files_of_the_same_folder)
     write_file(folder / "short.bin", tetrahedron_data().substr(1));
     for (const std::string uri : {"sub/box.bin", "sub%2Fbox.bin", "../box.bin", "/etc/passwd", "..", "", "a%00b"})
         EXPECT_TRUE(contains(refusal_beside(uri), "is not a file of the same folder; export it as .glb")) << uri;
-    EXPECT_TRUE(contains(refusal_beside("none.bin"), "none.bin' cannot be read_gltf; copy it into the folder"));
+    EXPECT_TRUE(contains(refusal_beside("none.bin"), "none.bin' cannot be read; copy it into the folder"));
     EXPECT_TRUE(contains(refusal_beside("sub"), "cannot be read"));
     EXPECT_TRUE(contains(refusal_beside("short.bin"), "buffer 0 has 71 bytes, not 72"));
     EXPECT_TRUE(contains(refusal(json("my%20box+1.bin"), "a.gltf"), "is not a file of the same folder"))
@@ -216,7 +216,7 @@ TEST_F(Gltf, reads_sparse_accessors)
 TEST_F(Gltf, looks_at_version_and_required_extensions_first)
 {
     EXPECT_TRUE(contains(refusal(changed(R"("version":"2.0")", R"("version":"1.0")")),
-                         "it is glTF 1.0, which is not read_gltf; convert it to glTF 2.0"));
+                         "it is glTF 1.0, which is not read; convert it to glTF 2.0"));
     EXPECT_TRUE(contains(refusal(R"({"asset":{"version":"1.1"},"meshes":{"a":{}}})", "a.gltf"), "it is glTF 1.1"));
     std::string first = plain_;
     first[4] = 1;
@@ -230,8 +230,8 @@ TEST_F(Gltf, looks_at_version_and_required_extensions_first)
           "EXT_lights_image_based", "KHR_mesh_quantization"})
         EXPECT_EQ(read_gltf(required(name)).mesh, tetrahedron()) << name;
     for (const std::string name : {"CESIUM_RTC", "EXT_meshopt_compression", "KHR_draco_mesh_compressionX", "VRMX"})
-        EXPECT_TRUE(contains(refusal(required(name)), "it requires the extension " + name +
-                                                          ", which is not read_gltf; export it again as .glb"));
+        EXPECT_TRUE(contains(refusal(required(name)),
+                             "it requires the extension " + name + ", which is not read; export it again as .glb"));
 }
 
 TEST_F(Gltf, honours_extensions_of_nodes)
@@ -270,7 +270,7 @@ TEST_F(Gltf, reads_draco_or_names_its_package)
         EXPECT_TRUE(contains(error, "install libdraco-dev")) << error;
     }
     EXPECT_EQ(read_gltf(glb(json_of(R"({"mesh":0})", use + R"("indices":1)"), tetrahedron_data())).mesh, tetrahedron())
-        << "plain accessors are read_gltf where they are there";
+        << "plain accessors are read where they are there";
 }
 
 TEST_F(Gltf, puts_meshes_where_their_nodes_are)
