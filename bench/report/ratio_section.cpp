@@ -46,10 +46,10 @@ double ratio_at(const ResultValue& ratio, const char* key)
 
 void add_ratio(std::vector<RatioGroup>& groups, const ReportInput& input, std::size_t file, const ResultValue& ratio)
 {
-    const ResultValue name = ratio.at("row");
+    const ResultValue name = ratio.at("row"), reference_name = ratio.at("reference");
     const ReportRow& row = row_named(input, file, name);
     if (!row.row->device_kind) name.reject("is of a row without a device");
-    const ReportRow& reference = row_named(input, file, ratio.at("reference"));
+    const ReportRow& reference = row_named(input, file, reference_name);
     const bool noisy = is_noisy(row) || is_noisy(reference);
     const RatioKey key{file, row.row->scene, rays_text(row.rays, row.task), row.kind(), reference.api};
     auto group = std::ranges::find_if(groups, [&](const RatioGroup& other) { return other.key == key; });
