@@ -97,8 +97,8 @@ bool has_packets(const KernelId& kernel)
 bool has_task(const KernelId& kernel)
 {
     const TaskTraits& task = traits_of(kernel.task);
-    const bool has_schedule =
-        task.finds_hits || kernel.schedule == Schedule::tiles || (task.crosses && kernel.schedule == Schedule::packets);
+    const bool has_schedule = task.finds_hits || kernel.schedule == Schedule::tiles ||
+                              (task.has_packets && kernel.schedule == Schedule::packets);
     if (!has_schedule) return false;
     if (task.crosses && kernel.math != MathMode::exact) return false;
     return (row_of(kernel).tasks & bit(kernel.task)) != 0;

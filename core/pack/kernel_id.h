@@ -97,11 +97,12 @@ struct TaskTraits {
     std::size_t words = 0;      ///< of a ray's answer
     bool takes_rays = false;    ///< given to a session; else they are an image's
     bool finds_hits = false; ///< its answers are hits (core/rays/hit.h), in any schedule and math mode that the kernel
-                             ///< has; other tasks have only schedule tiles
+                             ///< has; other tasks have schedule tiles alone, but for has_packets
     bool crosses = false; ///< it goes through occlusive faces, to where a ray leaves the domain: no ray has an end, and
                           ///< math mode is exact
     bool absorbs = false; ///< it crosses a medium, and ends where too little light passes
     bool tallies = false; ///< it has a sum of lengths per tet, too, after the answers of the rays
+    bool has_packets = false; ///< of a task that crosses: a walk of it is written for packets, too
 };
 [[nodiscard]] const TaskTraits& traits_of(Task task);
 
