@@ -402,7 +402,8 @@ void read_mesh_only(const fs::path& mesh, const fs::path& out, const std::string
 std::vector<TetsAttempt> fallback_attempts(const BuildOptions& options)
 {
     if (options.switches != default_build(options.tets).switches) return {};
-    constexpr std::uint32_t first_orders = 8, orders_of_welds = 10, orders_of_quality = 5, all_orders = 32;
+    constexpr std::uint32_t first_orders = 8, orders_of_welds = 10, orders_of_quality = 5, orders_of_squares = 4,
+                            all_orders = 32;
     const std::string careful = options.switches + "0/2/2", quality = default_build(TetsKind::cdt).switches;
     std::vector<TetsAttempt> all;
     if (options.switches != quality)
@@ -420,6 +421,12 @@ std::vector<TetsAttempt> fallback_attempts(const BuildOptions& options)
             all.push_back({quality + "0/2/2", order, weld});
     };
     add_welded(0x1p-20); // before those that may take their whole share of the time
+    const auto add_squares = [&](const std::vector<std::uint32_t>& along_a_side) {
+        for (const std::uint32_t squares : along_a_side)
+            for (std::uint32_t order = 0; order < orders_of_squares; ++order)
+                all.push_back({careful, 100 * squares + order});
+    };
+    add_squares({5, 2, 3, 1});
     if (options.switches != quality) all.push_back({quality});
     all.push_back({quality + "MT1e-13"});
     all.push_back({"p"});
@@ -430,6 +437,7 @@ std::vector<TetsAttempt> fallback_attempts(const BuildOptions& options)
     }
     for (std::uint32_t order = first_orders; order < all_orders; ++order)
         all.push_back({careful, order});
+    add_squares({4, 6, 7, 9, 10, 11, 12, 13, 14, 15, 16});
     all.push_back({"pMT1e-13"});
     all.push_back({std::string(cgal_switches)}); // it does not end on most near layers, so it comes last
     return all;

@@ -18,7 +18,7 @@ namespace tetrace {
 /// A way to make tets.
 struct TetsAttempt {
     std::string switches;
-    std::uint32_t order = 0; ///< in which TetGen gets the mesh
+    std::uint32_t order = 0; ///< in which TetGen gets the mesh, and the domain's sides: the builder's --order
     double weld = 0;         ///< tolerance of the repair; 0: only if it needs one
 
     friend bool operator==(const TetsAttempt&, const TetsAttempt&) = default;
@@ -27,10 +27,11 @@ struct TetsAttempt {
 /// What a build tries, in this order, if TetGen fails with the options' own switches; none if the user chose those.
 /// TetGen's own optimiser may take minutes on near layers, and tets for rays have ours (hence O0); some layers are
 /// nearer than its tolerance (T1e-13). TetGen crashes on some meshes in one order of vertices and not in another, most
-/// often where it removes Steiner points (hence Y0/2/2); on some with pY and not with pq5Y, on others the other way
-/// round; and refuses some with pq5Y and not with facets that stay apart (M) and a finer tolerance (T), or without Y
-/// and q. Where layers are too near to each other for it, a repair merges them. At last CGAL makes the tets, if the
-/// builder has a CGAL that does. Figures: results/repair.md.
+/// often where it removes Steiner points (hence Y0/2/2); or with the domain's sides in some number of squares and not
+/// in another; on some with pY and not with pq5Y, on others the other way round; and refuses some with pq5Y and not
+/// with facets that stay apart (M) and a finer tolerance (T), or without Y and q. Where layers are too near to each
+/// other for it, a repair merges them. At last CGAL makes the tets, if the builder has a CGAL that does. Figures:
+/// results/repair.md.
 [[nodiscard]] std::vector<TetsAttempt> fallback_attempts(const BuildOptions& options);
 
 /// A build that left a scene.

@@ -332,6 +332,8 @@ PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& ta
     prepared.limits.several_pieces = has_pieces || has_own;
     if (has_pieces) // more vertices on the sides to begin with
         prepared.surface = domain_surface(make_domain(scene.mesh, options.domain, 2 * options.divisions));
+    if (const std::uint32_t squares = options.order / 100; squares > 0)
+        prepared.surface = domain_surface(make_domain(scene.mesh, options.domain, squares));
     // With O0 TetGen has failed before, and needs fewer points; it optimises its tets again after it has inserted some.
     const bool has_no_points =
         options.switches.find('q') != std::string::npos || options.switches.find("O0") != std::string::npos;

@@ -39,9 +39,10 @@ struct BuilderOptions {
     DomainKind domain = DomainKind::tight;
     std::uint32_t divisions = 8;
     std::string switches = "pq5Y"; ///< TetGen's, or cgal_switches
-    std::uint32_t order = 0;       ///< in which TetGen gets the mesh (run_tetgen)
-    bool repair = false;           ///< cut triangles that cross
-    double weld = 0;               ///< repair: with at least this tolerance, domain units; 0: only if it must be
+    std::uint32_t order = 0; ///< in which TetGen gets the mesh (run_tetgen); from 100 on it also gets the sides of
+                             ///< the domain in order / 100 squares each way, in place of `divisions`
+    bool repair = false;     ///< cut triangles that cross
+    double weld = 0;         ///< repair: with at least this tolerance, domain units; 0: only if it must be
     TetsKind tets = TetsKind::cdt;
     int effort = default_effort; ///< of the optimiser, for TetsKind::rays
     bool as_read = false;        ///< nothing is built: the triangles are written as the file has them (raw_mesh.h)

@@ -122,8 +122,10 @@ std::optional<int> parse(int argc, char** argv, BuilderOptions& options)
                    "TetGen's switches, or cgal: CGAL makes the tets (6.1 and later); default: pq5Y")
         ->type_name("SWITCHES");
     app.add_option("--order", options.order,
-                   "N: give TetGen vertices and triangles in the Nth order at random; default: 0, as they are")
-        ->type_name("N");
+                   "N: give TetGen vertices and triangles in the Nth order at random; from 100 on, the domain's sides "
+                   "in N / 100 squares, too; default: 0, as they are")
+        ->type_name("N")
+        ->check(CLI::Range(0, 6499));
     app.add_flag("--repair", options.repair,
                  "cut triangles that cross along their intersections, in place of refusing");
     app.add_option("--weld", options.weld,
@@ -245,7 +247,8 @@ int main(int argc, char** argv)
     } else {
         say("stage", "TetGen " + options.switches);
         std::set_terminate(explain_tetgen_failure); // and the call is not inside a handler: see run_tetgen
-        output = run_tetgen(prepared.facets(), prepared.surface, prepared.points, options.switches, options.order);
+        output =
+            run_tetgen(prepared.facets(), prepared.surface, prepared.points, options.switches, options.order % 100);
     }
     begin_limit(0);
     finish_when_interrupted(prepared);

@@ -15,7 +15,7 @@ void require_switches(const std::string& switches);
 
 /// Tetrahedralizes the inside of `surface` (the domain's) with every triangle of `mesh` as a constraint, and `points`
 /// of its inside as more vertices. order: 0 gives TetGen vertices and triangles as they are, every other number in an
-/// order of its own: whether TetGen fails depends on it.
+/// order of its own (the last two digits of BuilderOptions::order): whether TetGen fails depends on it.
 /// TetGen throws an int where it fails, and libtet cannot be unwound: no caller may catch it or run clean-up. So call
 /// it from main with std::set_terminate(explain_tetgen_failure), or where failure is not expected.
 [[nodiscard]] RawTets run_tetgen(const TriangleMesh& mesh, const TriangleMesh& surface,

@@ -283,6 +283,12 @@ TEST_F(BuilderProgram, gives_tetgen_the_mesh_in_any_order)
     EXPECT_NE(other.tets, first.tets);
     EXPECT_EQ(other.tets, again.tets);
     EXPECT_EQ(other.build.order, 3u);
+    const Scene coarse = scene_in("203");
+    EXPECT_EQ(coarse.mesh, first.mesh);
+    EXPECT_EQ(coarse.domain, first.domain) << "only TetGen gets its sides in 2 x 2 squares";
+    EXPECT_LT(coarse.tets.tets.size(), first.tets.tets.size());
+    EXPECT_EQ(coarse.build.order, 203u);
+    EXPECT_EQ(run_on(mesh, "--order 6500").code, BUILDER_USAGE) << "65 squares along a side";
 }
 
 TEST_F(BuilderProgram, ends_tetgen_at_its_limit_of_processor_time)
