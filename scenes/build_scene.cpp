@@ -320,9 +320,12 @@ BuildEnd build_scene(const fs::path& mesh, const fs::path& out, const std::strin
     };
     Run run = run_attempt();
     std::vector<std::string> failed{text_of(attempt)};
+    double no_repair_at = 0; // in any order
     for (const TetsAttempt& next : fallback_attempts(options)) {
+        if (attempt.weld > 0 && run.repair_failed()) no_repair_at = attempt.weld;
         if (!run.tetgen_failed() && !(attempt.weld > 0 && run.repair_failed())) break;
         if (spent_s > 0.95 * options.time_limit_s) break;
+        if (next.weld > 0 && next.weld == no_repair_at) continue;
         if (failed.size() == 1)
             notes.push_back(fmt::format("TetGen failed with switches {} ({}); trying others", failed.back(),
                                         ending_of(run.outcome, options).what));

@@ -4,6 +4,7 @@
 
 #include <csignal>
 #include <fmt/format.h>
+#include <map>
 #include <sys/resource.h>
 #include <thread>
 #include <unistd.h>
@@ -322,6 +323,19 @@ TEST_F(Load, tries_all_other_ways_and_says_how_many_where_none_helps)
     EXPECT_TRUE(fallback_attempts(rays).empty()) << "the user's own";
     EXPECT_TRUE(contains(error_with("exit " + std::to_string(BUILDER_SELF_INTERSECTION)), "with switches pq5Y: "))
         << "other switches do not help";
+}
+
+TEST_F(Load, repairs_in_vain_once_at_each_tolerance)
+{
+    request.build = default_build(TetsKind::rays);
+    (void)error_with(fmt::format("case \"$*\" in *'--weld 9.5367431640625e-07 '*) exit {};; esac\nexit {}",
+                                 BUILDER_SELF_INTERSECTION, BUILDER_TETGEN_REFUSED));
+    std::map<double, std::size_t> runs;
+    const auto attempts = fallback_attempts(request.build);
+    for (const TetsAttempt& attempt : attempts)
+        ++runs[attempt.weld];
+    EXPECT_GT(runs[0x1p-20], 1u);
+    EXPECT_EQ(builder_runs(), 1 + attempts.size() - (runs[0x1p-20] - 1)) << "in any order the repair is the same";
 }
 
 TEST_F(Load, reports_a_crash)
