@@ -440,6 +440,7 @@ std::vector<TetsAttempt> fallback_attempts(const BuildOptions& options)
     }
     for (std::uint32_t order = first_orders; order < all_orders; ++order)
         all.push_back({careful, order});
+    add_welded(0x1p-14);
     add_squares({4, 6, 7, 9, 10, 11, 12, 13, 14, 15, 16});
     all.push_back({"pMT1e-13"});
     all.push_back({std::string(cgal_switches)}); // it does not end on most near layers, so it comes last

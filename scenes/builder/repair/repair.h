@@ -25,7 +25,7 @@ inline constexpr std::uint32_t max_repair_passes = 10;
 /// The tolerances of weld() that repair() tries, in domain units: of the triangles that still cross after cuts, then of
 /// all.
 inline constexpr std::array<double, 2> local_tolerances = {0x1p-24, 0x1p-20};
-inline constexpr std::array<double, 3> weld_tolerances = {0x1p-20, 0x1p-18, 0x1p-16};
+inline constexpr std::array<double, 4> weld_tolerances = {0x1p-20, 0x1p-18, 0x1p-16, 0x1p-14};
 
 /// Cuts triangles that cross, overlap or touch, until every two triangles meet only in shared vertices and edges. First
 /// along their exact intersections, by which no vertex moves. Where rounding makes new crossings without end, goes on
