@@ -320,7 +320,7 @@ BuildEnd build_scene(const fs::path& mesh, const fs::path& out, const std::strin
     };
     Run run = run_attempt();
     std::vector<std::string> failed{text_of(attempt)};
-    double no_repair_at = 0; // in any order
+    double no_repair_at = 0; // the tolerance at which a repair failed: it would in every order
     for (const TetsAttempt& next : fallback_attempts(options)) {
         if (attempt.weld > 0 && run.repair_failed()) no_repair_at = attempt.weld;
         if (!run.tetgen_failed() && !(attempt.weld > 0 && run.repair_failed())) break;
