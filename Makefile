@@ -86,7 +86,7 @@ test test-all:
 
 sanitize:
 	@scripts/install-packages build test
-	cmake --preset asan -G Ninja -DBUILD_TESTING=ON
+	cmake --preset asan -G Ninja -DBUILD_TESTING=ON -DCMAKE_COMPILE_WARNING_AS_ERROR=$(if $(WERROR),ON,OFF)
 	cmake --build --preset asan -j $(JOBS) --target $(if $(ROOMS),$(patsubst %,small_tests_%,$(subst $(comma), ,$(ROOMS))),small_tests)
 	ctest --preset asan -j $(JOBS) -L '$(if $(ROOMS),^small-($(subst $(comma),|,$(ROOMS)))$$,small)' --output-log build/asan/test.log; \
 	    status=$$?; echo "== asan"; scripts/test-summary build/asan; exit $$status

@@ -46,11 +46,10 @@ KernelId kernel_of(std::string_view layout)
 
 Backend& backend_of(std::string_view name)
 {
+    if (Backend* const found = find_backend(name)) return *found;
     std::string names;
-    for (Backend* const backend : all_backends()) {
-        if (backend->name() == name) return *backend;
+    for (const Backend* const backend : all_backends())
         names += (names.empty() ? "" : ", ") + backend->name();
-    }
     throw Error(ErrorKind::usage, "opening a device: backend '" + std::string(name) + "' is not one of " + names);
 }
 

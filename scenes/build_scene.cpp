@@ -228,7 +228,8 @@ std::vector<std::string> arguments_of(const fs::path& mesh, const fs::path& out,
 std::string text_of(const TetsAttempt& attempt)
 {
     std::string text = attempt.switches;
-    if (attempt.order > 0) text += fmt::format(" in order {}", attempt.order);
+    if (attempt.order >= 100) text += fmt::format(" with the domain's sides in {} squares", attempt.order / 100);
+    if (attempt.order % 100 > 0) text += fmt::format(" in order {}", attempt.order % 100);
     if (attempt.weld > 0) text += fmt::format(" welded at {:.2g}", attempt.weld);
     return text;
 }
@@ -432,7 +433,8 @@ std::vector<TetsAttempt> fallback_attempts(const BuildOptions& options)
     add_squares({5, 2, 3, 1});
     if (options.switches != quality) all.push_back({quality});
     all.push_back({quality + "MT1e-13"});
-    all.push_back({"p"});
+    for (std::uint32_t order = 0; order < orders_of_quality; ++order)
+        all.push_back({"p", order});
     add_welded_quality(0x1p-20);
     for (const double weld : {0x1p-18, 0x1p-16}) {
         add_welded(weld);

@@ -148,26 +148,26 @@ bool MeshSceneLoader::read_cached()
     const bool has_own = !loaded_.scene.source_tets.empty();
     if (difference.empty() && !info.optimised.reason.empty() && (!has_own || request_.build.optimise_own))
         loaded_.messages.push_back(
-            fmt::format("{}: the tets are {}: {}", label_, has_own ? "the file's" : "TetGen's", info.optimised.reason));
+            fmt::format("the tets are {}: {}", has_own ? "the file's" : "TetGen's", info.optimised.reason));
     const RepairInfo& repair = info.repair;
     if (difference.empty() && repair.crossing_pairs > 0)
-        loaded_.messages.push_back(fmt::format(
-            "{}: repaired when it was built: {} pairs of triangles crossed, and {} triangles were cut into {}", label_,
-            repair.crossing_pairs, repair.cut_triangles, repair.pieces));
+        loaded_.messages.push_back(
+            fmt::format("repaired when it was built: {} pairs of triangles crossed, and {} triangles were cut into {}",
+                        repair.crossing_pairs, repair.cut_triangles, repair.pieces));
     if (difference.empty() && repair.tolerance > 0)
-        loaded_.messages.push_back(fmt::format("{}: the repair moved faces by up to {:.1e} to merge near layers",
-                                               label_, std::ldexp(repair.moved, -info.scale_exponent)));
+        loaded_.messages.push_back(fmt::format("the repair moved faces by up to {:.1e} to merge near layers",
+                                               std::ldexp(repair.moved, -info.scale_exponent)));
     if (difference.empty() && info.switches != request_.build.switches)
-        loaded_.messages.push_back(fmt::format("{}: made {}, since TetGen's switches {} failed", label_,
+        loaded_.messages.push_back(fmt::format("made {}, since TetGen's switches {} failed",
                                                info.switches == cgal_switches ? "by CGAL" : "with " + info.switches,
                                                request_.build.switches));
     if (difference.empty() && info.degenerate_triangles + info.duplicate_triangles > 0)
         loaded_.messages.push_back(
-            fmt::format("{}: {} degenerate and {} duplicate triangles were removed when it was built", label_,
+            fmt::format("{} degenerate and {} duplicate triangles were removed when it was built",
                         info.degenerate_triangles, info.duplicate_triangles));
     if (difference.empty() && info.centre != Double3{})
-        loaded_.messages.push_back(fmt::format("{}: ({}, {}, {}) was subtracted from its coordinates when it was built",
-                                               label_, info.centre.x, info.centre.y, info.centre.z));
+        loaded_.messages.push_back(fmt::format("({}, {}, {}) was subtracted from its coordinates when it was built",
+                                               info.centre.x, info.centre.y, info.centre.z));
     loaded_.from_cache = difference.empty();
     return loaded_.from_cache;
 }

@@ -56,7 +56,7 @@ std::string array_place(bool in_texels, const TexelBinding& texels)
 LaunchCase tile_case(const Device& device, const KernelId& kernel, const PackedScene& scene, const LaunchParams& launch,
                      std::span<const Quad> rays, const std::filesystem::path& program_file)
 {
-    const bool in_texels = device.kind != DeviceKind::gpu;
+    const bool in_texels = device.kind != DeviceKind::gpu && program_file.empty(); // as SessionOptions::program_file
     LaunchCase made = case_of(embedded_kernels(), shader_name(kernel) + (in_texels ? "_texels" : ""));
     const bool starts_outside = kernel.task == Task::trace && launch.start_tet == NO_TET;
     const std::array<std::uint32_t, 5> constants = {launch.tile_height, starts_outside ? 1u : 0u, in_texels ? 1u : 0u,

@@ -16,6 +16,7 @@
 #include "core/device/launch.h"
 #include "core/device/scene_buffers.h"
 #include "core/device/session.h"
+#include "core/isolation/isolation.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -68,9 +69,11 @@ DumpedCase files_of_case(const LaunchCase& launch, const CaseOutput& output, con
 
 [[noreturn]] void refuse_case(const Backend& backend)
 {
-    throw Error(ErrorKind::usage,
-                fmt::format("dump: {} has no host that runs a case without tetrace; opencl and vulkan have one",
-                            backend.name()));
+    std::vector<std::string> others;
+    for (const Backend* other : direct_backends())
+        if (has_case_host(*other)) others.push_back(other->name());
+    throw Error(ErrorKind::usage, fmt::format("dump: {} has no host that runs a case without tetrace; with one: {}",
+                                              backend.name(), fmt::join(others, ", ")));
 }
 
 DumpedCase defect_case(const Backend& backend, std::string_view name)
@@ -191,9 +194,8 @@ DumpedCase tile_case(const Options& options, const Backend& backend)
     if (one_kernel(options).math != MathMode::exact)
         throw Error(ErrorKind::usage, "dump: a case is of math mode exact: in fast, every driver may have other hits");
     const RowKey key = expecting_row(options);
-    if (!backend.defect_case(all_defects().front().name, {})) refuse_case(backend);
-    Device target = case_target(options, backend);
-    if (!options.changes.empty() && backend.name() == "vulkan") target.kind = DeviceKind::gpu; // no texels, as variants
+    if (!has_case_host(backend)) refuse_case(backend);
+    const Device target = case_target(options, backend);
     SceneWork scene = load_work(scene_requests(options).front(), options);
     RowRun row = open_row(key, scene, options);
     if (row.session == nullptr) throw Error(ErrorKind::unsupported, fmt::format("dump: openmp: {}", reason_of(row)));

@@ -39,47 +39,28 @@ TraceJob coarse_job(TraceJob job, unsigned step)
     return job;
 }
 
+/// Gives the session 1 of step * step of these rays, the first ones; returns their number. lists: the quads of a ray,
+/// each in a list of all rays' (kernels/layouts/layout.h).
+std::size_t give_first(Session& session, std::span<const Quad> quads, std::size_t lists, unsigned step)
+{
+    const std::size_t all = quads.size() / lists;
+    const std::size_t rays = std::max<std::size_t>(all / (std::size_t{step} * step) / TILE_WIDTH, 1) * TILE_WIDTH;
+    std::vector<Quad> first;
+    for (std::size_t list = 0; list < quads.size(); list += all)
+        first.insert(first.end(), &quads[list], &quads[list] + rays);
+    session.set_rays(first);
+    return rays;
+}
+
 /// The job that traces 1 of step * step of the view's rays; of given rays, the first ones.
 TraceJob prepare_probe(RowRun& row, std::size_t view, unsigned step)
 {
     const TraceJob job = prepare_view(row, view);
     if (!traits_of(row.key.kernel.task).takes_rays) return coarse_job(job, step);
-    const std::size_t all = ray_count(row, view);
-    const std::size_t rays = std::max<std::size_t>(all / (std::size_t{step} * step) / TILE_WIDTH, 1) * TILE_WIDTH;
     const auto& quads =
         row.scene->given_rays().rows(*row.scene, row.key, row.packed != nullptr ? &row.packed->data : nullptr, view);
-    // All directions come first, then all origins (kernels/layouts/layout.h).
-    std::vector<Quad> first;
-    for (std::size_t list = 0; list < quads.size(); list += all)
-        first.insert(first.end(), &quads[list], &quads[list] + rays);
     row.views_of_rays.clear();
-    row.session->set_rays(first);
-    return given_job(rays, job.max_steps, job.any_hit);
-}
-
-/// Estimates the seconds of a view by tracing more and more of its rays, until there are enough for an estimate. The
-/// first launch, in which devices may compile, does not count; its time goes into the row's first pass. enough_s: what
-/// a probe takes at most, if it can be made so short.
-double estimated_view_s(RowRun& row, const Clock& clock, double left_s, double enough_s)
-{
-    const std::size_t view = first_view_with_rays(row);
-    if (view == row.scene->views().size()) return 0;
-    unsigned step = coarsest_step;
-    while (step > 1 && std::min(row.scene->width(), row.scene->height()) / step < TILE_WIDTH)
-        step /= 2;
-    const auto launch = [&] {
-        const TraceJob job = prepare_probe(row, view, step);
-        return std::pair(timed_launch(*row.session, job, clock).wall_s, static_cast<double>(job.width) * job.height);
-    };
-    std::get<Traced>(row.outcome).wall_s += launch().first;
-    const double patience_s = patience * left_s;
-    for (;; step /= 2) {
-        // The quickest of three where the first is slow: on a busy machine a thread may wait longer than it works.
-        auto [seconds, rays] = launch();
-        for (int again = 0; again < 2 && seconds >= enough_s && seconds < patience_s; ++again)
-            seconds = std::min(seconds, launch().first);
-        if (seconds >= enough_s || step == 1) return seconds / rays * static_cast<double>(ray_count(row, view));
-    }
+    return given_job(give_first(*row.session, quads, GIVEN_RAY_QUADS, step), job.max_steps, job.any_hit);
 }
 
 /// Whether the row is still in the run.
@@ -101,20 +82,69 @@ Budget::Budget(double seconds, Clock clock) : seconds_(seconds), clock_(std::mov
 
 void Budget::plan(std::vector<RowRun>& rows, unsigned samples, double sample_s, unsigned runs)
 {
-    plan(rows, Entry{.samples = static_cast<double>(samples), .sample_s = sample_s, .runs = static_cast<double>(runs)},
-         0, false);
+    plan(
+        rows, Entry{.samples = static_cast<double>(samples), .sample_s = sample_s, .runs = static_cast<double>(runs)},
+        [](RowRun& row) { return views_of(row, 0); }, false);
 }
 
 void Budget::plan_views(std::vector<RowRun>& rows, unsigned samples, double sample_s, std::size_t first)
 {
-    plan(rows, Entry{.samples = static_cast<double>(samples), .sample_s = sample_s}, first, true);
+    plan(
+        rows, Entry{.samples = static_cast<double>(samples), .sample_s = sample_s},
+        [first](RowRun& row) { return views_of(row, first); }, true);
+}
+
+void Budget::plan_batches(std::vector<RowRun>& rows, unsigned samples, double sample_s, std::size_t batches,
+                          std::span<const Quad> quads)
+{
+    const auto batches_of = [&](RowRun& row) {
+        return Parts{batches, quads.size() / RAY_QUADS, coarsest_step, [&row, quads](unsigned step) {
+                         return search_job(give_first(*row.session, quads, RAY_QUADS, step));
+                     }};
+    };
+    plan(rows, Entry{.samples = static_cast<double>(samples), .sample_s = sample_s}, batches_of, true);
+}
+
+Budget::Parts Budget::views_of(RowRun& row, std::size_t first)
+{
+    const std::size_t views = row.scene->views().size(), view = first_view_with_rays(row);
+    Parts parts{.count = views - first};
+    if (view == views) return parts;
+    parts.rays = ray_count(row, view);
+    parts.max_step = coarsest_step;
+    while (parts.max_step > 1 && std::min(row.scene->width(), row.scene->height()) / parts.max_step < TILE_WIDTH)
+        parts.max_step /= 2;
+    parts.prepare = [&row, view](unsigned step) { return prepare_probe(row, view, step); };
+    return parts;
+}
+
+/// Estimates the seconds of a part by tracing more and more of its rays, until there are enough for an estimate. The
+/// first launch, in which devices may compile, does not count; its time goes into the row's first pass. enough_s: what
+/// a probe takes at most, if it can be made so short.
+double Budget::estimated_part_s(RowRun& row, const Parts& parts, double enough_s) const
+{
+    if (parts.rays == 0) return 0;
+    unsigned step = parts.max_step;
+    const auto launch = [&] {
+        const TraceJob job = parts.prepare(step);
+        return std::pair(timed_launch(*row.session, job, clock_).wall_s, static_cast<double>(job.rays()));
+    };
+    const double patience_s = patience * left_s();
+    std::get<Traced>(row.outcome).wall_s += launch().first;
+    for (;; step /= 2) {
+        // The quickest of three where the first is slow: on a busy machine a thread may wait longer than it works.
+        auto [seconds, rays] = launch();
+        for (int again = 0; again < 2 && seconds >= enough_s && seconds < patience_s; ++again)
+            seconds = std::min(seconds, launch().first);
+        if (seconds >= enough_s || step == 1) return seconds / rays * static_cast<double>(parts.rays);
+    }
 }
 
 /// samples: how many there are of each row, in how many runs, and how long each lasts.
-void Budget::plan(std::vector<RowRun>& rows, const Entry& samples, std::size_t first_view, bool view_by_view)
+void Budget::plan(std::vector<RowRun>& rows, const Entry& samples, const PartsOf& parts_of, bool part_by_part)
 {
     start_s_ = now();
-    if (std::isinf(seconds_)) return;
+    if (!is_limited()) return;
     const double enough_s = std::min(telling_s, estimating * seconds_ / static_cast<double>(rows.size()));
     for (std::size_t i = 0; i < rows.size(); ++i) {
         RowRun& row = rows[i];
@@ -129,28 +159,34 @@ void Budget::plan(std::vector<RowRun>& rows, const Entry& samples, std::size_t f
                                                      seconds_text(seconds_))};
             row.session.reset();
         }
-        if (is_alive(row)) guarded(row, [&] { entry.view_s = estimated_view_s(row, clock_, left_s(), enough_s); });
+        Parts parts;
+        if (is_alive(row))
+            guarded(row, [&] {
+                parts = parts_of(row);
+                entry.view_s = estimated_part_s(row, parts, enough_s);
+            });
         if (!is_alive(row)) continue;
-        entry.views = static_cast<double>(row.scene->views().size() - first_view);
+        entry.views = static_cast<double>(parts.count);
         entry.views_left =
             entry.views + 1 + (samples.samples > 0 ? entry.views * entry.runs : 0); // verified, warmed up
         // `reproduce` takes all that were asked for; `bench` may do with fewer.
-        if (!view_by_view) entry.samples = std::min(entry.samples, static_cast<double>(min_samples));
-        entry.views_per_sample = view_by_view ? 1 : entry.views;
+        if (!part_by_part) entry.samples = std::min(entry.samples, static_cast<double>(min_samples));
+        entry.views_per_sample = part_by_part ? 1 : entry.views;
         entry.views_to_judge = entry.views;
-        if (const std::size_t view = first_view_with_rays(row); view < row.scene->views().size())
-            entry.view_rays = static_cast<double>(ray_count(row, view));
+        entry.view_rays = static_cast<double>(parts.rays);
         entries_.push_back(entry);
     }
     for (Entry& entry : entries_)
-        entry.is_reference = std::ranges::any_of(
-            entries_, [&](const Entry& other) { return reference_of(other.row->key) == entry.row->key; });
+        entry.is_reference = std::ranges::any_of(entries_, [&](const Entry& other) {
+            return other.row->scene != nullptr && reference_of(other.row->key) == entry.row->key;
+        });
     fit(left_s());
     if (alive() == 1 && needed_s() > left_s())
         say(fmt::format(
             "--budget: even one row would take about {}, and {} of {} is left; it is measured anyway. Other "
-            "rows, fewer --views or a smaller --size take less",
-            seconds_text(needed_s()), seconds_text(std::max(0.0, left_s())), seconds_text(seconds_)));
+            "rows, {} take less",
+            seconds_text(needed_s()), seconds_text(std::max(0.0, left_s())), seconds_text(seconds_),
+            rows.front().scene == nullptr ? "or fewer --searches," : "fewer --views or a smaller --size"));
 }
 
 /// A sample of several passes has one more, which is launched by itself, and up to one more than it needs.

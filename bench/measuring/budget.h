@@ -3,6 +3,7 @@
 #include "bench/rows/row_tracing.h"
 #include "bench/statistics/statistics.h"
 
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -39,6 +40,7 @@ public:
     explicit Budget(double seconds = std::numeric_limits<double>::infinity(), Clock clock = host_clock());
 
     [[nodiscard]] const Clock& clock() const { return clock_; }
+    [[nodiscard]] bool is_limited() const { return seconds_ < std::numeric_limits<double>::infinity(); }
     [[nodiscard]] double now() const { return clock_(); }
     [[nodiscard]] double spent_s() const { return now() - start_s_; }
     [[nodiscard]] double left_s() const { return seconds_ - spent_s(); }
@@ -50,7 +52,12 @@ public:
     void plan(std::vector<RowRun>& rows, unsigned samples, double sample_s = 0, unsigned runs = 1);
     /// The same for rows that are verified and timed view by view, in samples of a view, from the view `first` on.
     void plan_views(std::vector<RowRun>& rows, unsigned samples, double sample_s, std::size_t first);
-    /// Records that a view of plan_views() has been timed, and skips rows until the others fit.
+    /// The same for rows of task search, which do this many more batches. quads: the rays of a batch, as sessions get
+    /// them; each session then has some of them. Any row can be skipped, as a reference is kept apart from the rows.
+    void plan_batches(std::vector<RowRun>& rows, unsigned samples, double sample_s, std::size_t batches,
+                      std::span<const Quad> quads);
+    /// Records that a view of plan_views() or a batch of plan_batches() has been timed, and skips rows until the others
+    /// fit.
     void view_done();
 
     /// Records that this number of views of a row need not be traced and judged: a journal has them.
@@ -82,7 +89,19 @@ private:
         [[nodiscard]] bool is_in_group_of(const Entry& other) const;
     };
 
-    void plan(std::vector<RowRun>& rows, const Entry& samples, std::size_t first_view, bool view_by_view);
+    /// What a row does: views, or batches of searches.
+    struct Parts {
+        std::size_t count = 0; ///< that are left
+        std::size_t rays = 0;  ///< of one of them
+        unsigned max_step = 1; ///< of the probes
+        /// Gives the session what the returned job needs, which traces 1 of step * step of the rays.
+        std::function<TraceJob(unsigned step)> prepare = {};
+    };
+    using PartsOf = std::function<Parts(RowRun&)>;
+
+    [[nodiscard]] static Parts views_of(RowRun& row, std::size_t first);
+    [[nodiscard]] double estimated_part_s(RowRun& row, const Parts& parts, double enough_s) const;
+    void plan(std::vector<RowRun>& rows, const Entry& samples, const PartsOf& parts_of, bool part_by_part);
     [[nodiscard]] double need_s(const Entry& entry) const;
     [[nodiscard]] double needed_s(bool by_references_only = false) const;
     [[nodiscard]] std::size_t alive() const;

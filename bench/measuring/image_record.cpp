@@ -26,17 +26,20 @@ std::uint64_t number_from(const json& value)
     return count_from<std::uint64_t>(value);
 }
 
-json totals_json(const RayTotals& t)
+json totals_json(const RayTotals& totals)
 {
-    return {t.rays,       t.hits,       t.misses,   t.lost,         t.unwritten, t.hit_steps,
-            t.miss_steps, t.lost_steps, t.reversed, t.length_units, t.absorbed,  t.light_units};
+    json list = json::array();
+    for (const auto count : counts_of_totals)
+        list.push_back(totals.*count);
+    return list;
 }
 
-RayTotals totals_from(const json& t)
+RayTotals totals_from(const json& list)
 {
-    return {number_from(t.at(0)), number_from(t.at(1)), number_from(t.at(2)),  number_from(t.at(3)),
-            number_from(t.at(4)), number_from(t.at(5)), number_from(t.at(6)),  number_from(t.at(7)),
-            number_from(t.at(8)), number_from(t.at(9)), number_from(t.at(10)), number_from(t.at(11))};
+    RayTotals totals;
+    for (std::size_t i = 0; i < std::size(counts_of_totals); ++i)
+        totals.*counts_of_totals[i] = number_from(list.at(i));
+    return totals;
 }
 
 json verdicts_json(const Verdicts& v)

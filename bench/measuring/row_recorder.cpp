@@ -150,8 +150,7 @@ std::optional<json> RowRecorder::run_part(std::size_t part, bool is_last, const 
     json entry = head_of(part);
     entry["rows"] = json::object();
     for (const RowRun* row : rows_) // those that have ended, which a run that goes on does not take up again
-        if (traced(*row) == nullptr && row->scene != nullptr)
-            entry["rows"][row_name(row->key)] = ended_json(row->outcome);
+        if (traced(*row) == nullptr) entry["rows"][row_name(row->key)] = ended_json(row->outcome);
     for (const std::size_t i : begun_) {
         entry["rows"][row_name(rows_[i]->key)] = outcome_json(outcome(i));
         if (traced(*rows_[i]) != nullptr) (*images_)[i].push_back(std::move(records_[i]));

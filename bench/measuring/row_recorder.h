@@ -47,7 +47,7 @@ struct Recording {
     Journal* journal = nullptr;      ///< where parts are kept
     RunProgress* progress = nullptr; ///< null: each recorder has its own
     MachineWatch* watch = nullptr;   ///< takes the pulse between samples
-    Budget* budget = &no_budget();   ///< of rows that trace views; may skip rows
+    Budget* budget = &no_budget();   ///< may skip rows
 };
 
 /// Takes rows through their parts: verifies each part with every row, times it where samples are asked for, and appends

@@ -111,12 +111,13 @@ const VerbHelp verb_help[] = {
      "several "
      "kinds of tets. "
      "The pictures are made by the first selected row of each scene.\n\n"
-     "The file of --out ends in .png, .exr or .ppm. With several pictures, scene, view and kind are inserted before "
-     "the extension. If it is a folder, the pictures in it are named SCENE-VIEW-KIND.png, or .ppm if OpenImageIO is "
-     "missing (PPM needs no library).",
+     "The file of --out ends in .png, .exr or .ppm; that of hits in .exr. With several pictures, scene, view and kind "
+     "are inserted before the extension. If it is a folder, the pictures in it are named SCENE-VIEW-KIND.png, or .ppm "
+     "if OpenImageIO is missing (PPM needs no library); hits are SCENE-VIEW-hits.exr.",
      "  tetrace render --scene bunny --views 0 --out bunny.png\n"
      "  tetrace render --scene armadillo --picture normals,steps --size 512\n"
      "  tetrace render --scene bunny --tets cdt,rays --picture steps --views 0 --out steps.png\n"
+     "  tetrace render --scene bunny --picture hits --views 0 --out hits.exr\n"
      "  tetrace render --scene field --picture crossings,light --views 0\n"
      "  tetrace render --scene nested --picture tally --views 0 --size 512\n"},
     {Verb::reproduce, "regenerate the paper's tables and figures",
@@ -238,8 +239,8 @@ const VerbHelp verb_help[] = {
      "none. The last four are faults. The first is printed in full, and the number of faults that rounding near an "
      "edge "
      "may explain. Exits with 1 if there is a fault. docs/judge.md defines every verdict and tolerance.",
-     "  tetrace judge --mesh bunny.ply --rays rays.npy --hits hits.npy\n"
-     "  tetrace judge --mesh bunny.ply --rays rays.npy --hits hits.npy --slack 16 --out judged.json --junit "
+     "  tetrace judge --mesh bunny.ply --ray-file rays.npy --hits hits.npy\n"
+     "  tetrace judge --mesh bunny.ply --ray-file rays.npy --hits hits.npy --slack 16 --out judged.json --junit "
      "judged.xml\n"},
     {Verb::compare, "compare results of bench, or two of check, row by row",
      "Compares the rows of B.json with those of the same name in A.json: another commit, driver, compiler or machine. "

@@ -5,6 +5,7 @@
 #include "bench/options/option_values.h"
 #include "bench/options/workload.h"
 #include "core/device/backend.h"
+#include "core/isolation/isolation.h"
 #include "scenes/catalogue.h"
 
 #include <algorithm>
@@ -332,9 +333,10 @@ std::vector<OptionRow> driver_options()
     const unsigned with_drivers = reproducing | bit(Verb::devices);
     return {
         {"Drivers", "--isolate", "KIND",
-         "The process in which the drivers of opencl, vulkan and cuda run: 'device', a separate process for each "
-         "device, so that a "
-         "driver that crashes or hangs ends only its row; 'none', tetrace's process, for debuggers. Default: device.",
+         fmt::format("The process in which drivers run ({}): 'device', a separate process for each device, so that a "
+                     "driver that crashes or hangs ends only its row; 'none', tetrace's process, for debuggers. "
+                     "Default: device.",
+                     fmt::join(foreign_backends(), ", ")),
          with_drivers, false, set_choice<Isolation>("--isolate", &Options::isolation)},
         {"Drivers", "--driver-limit", "TIME",
          "End a driver's process if it does not answer a call within this time: seconds, or a number followed by s, "
@@ -370,8 +372,7 @@ std::vector<OptionRow> judging_options()
          "Launches of a sample that may be on the device together, 1 to 8, each with an output of its own: a launch "
          "begins when the one that is N before it has ended. All N outputs are verified before and after the samples. "
          "Rates are then throughput, with less of the gaps between launches; latency is still that of single launches. "
-         "For "
-         "opencl, vulkan, cuda and cuda-host; rows of openmp and embree, and of --task tally, have 1. Default: 1.",
+         "Rows on devices of kind cpu, and those of --task tally, have 1. Default: 1.",
          bit(Verb::bench), false, set_count("--launches-in-flight", &Options::launches_in_flight, 1, max_in_flight)},
         {"Measuring", "--sample-time", "TIME",
          "Minimum duration of a sample on its device, or 4096 passes, if that is less: seconds, or a number "
@@ -382,14 +383,14 @@ std::vector<OptionRow> judging_options()
          bit(Verb::bench) | bit(Verb::reproduce), false,
          [](Options& o, const std::string& v) { o.sample_s = parse_sample_time(v); }},
         {"Measuring", "--budget", "TIME",
-         "Wall-clock time for verifying and timing all rows; of 'check' for verifying them. Loading scenes, opening "
-         "devices and exit searches do not count. If not all samples fit, 'bench' takes fewer, but at least 5 (or "
-         "--samples, if less), since fewer give no interval. The slowest rows are skipped until the others fit; of "
-         "each scene the fastest row of tets and that of BVHs stay, until whole scenes are skipped, the last one "
-         "first. "
-         "'reproduce' shares the time evenly by the scenes that are left. The result states the budget that the "
-         "skipped rows need. With --repeat, each repetition has it. One row is always measured, however small TIME "
-         "is; otherwise a run exceeds the budget by at most a quarter. --benchmark_repetitions lifts the limit. "
+         "Wall-clock time for verifying and timing all rows; of 'check' for verifying them. Loading scenes and opening "
+         "devices do not count. If not all samples fit, 'bench' takes fewer, but at least 5 (or --samples, if less), "
+         "since fewer give no interval. The slowest rows are skipped until the others fit; of each scene the fastest "
+         "row of tets and that of BVHs stay, until whole scenes are skipped, the last one first. 'reproduce' shares "
+         "the time evenly by the scenes that are left; the exit searches of table5 count as one more. The result "
+         "states the budget that the skipped rows need. With --repeat, each repetition has it. One row is always "
+         "measured, however small TIME is; otherwise a run exceeds the budget by at most a quarter. "
+         "--benchmark_repetitions lifts the limit. "
          "Default: 4m; of 'check' and 'reproduce' no limit, but of rivals 10m, of ladder 5m. For --variants it is the "
          "time for all of them.",
          sharing | bit(Verb::inspect), false, set_seconds("--budget", &Options::budget_s),
@@ -437,9 +438,9 @@ std::vector<OptionRow> judging_options()
          bit(Verb::compare), false, set(&Options::allow_missing),
          usual_for(every_verb, "rows that B lacks do not fail")},
         {"Pictures", "--picture", "KIND",
-         "'normals', the surface shaded by its normals; or, in false colour with a scale bar: 'steps' of each ray to "
-         "its "
-         "hit; 'crossings', all tets that it crosses; 'depth', the optical depth of a medium, and 'light', what it "
+         "'normals', the surface shaded by its normals; 'hits', an .exr with t, steps, normal and face of each hit "
+         "(docs/own-mesh.md); or, in false colour with a scale bar: 'steps' of each ray to its hit; "
+         "'crossings', all tets that it crosses; 'depth', the optical depth of a medium, and 'light', what it "
          "emits; 'tally', the lengths of the view's rays in each tet over its volume, on a cut through the middle of "
          "the "
          "scene, across the view (docs/volume.md). Default: normals.",

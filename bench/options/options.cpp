@@ -195,6 +195,8 @@ void check_together(const Options& options)
     if (options.verb == Verb::render && !options.rays.empty() &&
         std::ranges::find(options.pictures, Picture::tally) == options.pictures.end())
         throw Error(ErrorKind::usage, "--rays: only --picture tally shows other rays than the image's own");
+    if (options.tets.size() > 1 && writes_hits(options.pictures))
+        throw Error(ErrorKind::usage, "--picture hits: a file has the hits of one kind of tets; name one with --tets");
     if ((options.defects || options.stress) && !shard_of(options).is_whole())
         throw Error(ErrorKind::usage, std::string(options.defects ? "--defects" : "--stress") +
                                           " takes only seconds and cannot be sharded; leave out --shard");

@@ -7,6 +7,7 @@
 #include "core/rays/camera_set.h"
 #include "scenes/catalogue.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -50,11 +51,18 @@ enum class Format { table, json, csv, markdown };
 template <>
 inline constexpr auto enum_names<Format> = names_up_to<Format::markdown>("table", "json", "csv", "markdown");
 
-/// A picture that `render` writes: of hits; or, from crossings on, of all tets of each ray; or of the sums of the tets.
-enum class Picture { normals, steps, crossings, depth, light, tally };
+/// A picture that `render` writes: of hits, or these themselves; or, from crossings on, of all tets of each ray; or of
+/// the sums of the tets.
+enum class Picture { normals, steps, hits, crossings, depth, light, tally };
 template <>
-inline constexpr auto enum_names<Picture> = names_up_to<Picture::tally>("normals", "steps", "crossings", "depth",
-                                                                        "light", "tally");
+inline constexpr auto enum_names<Picture> = names_up_to<Picture::tally>("normals", "steps", "hits", "crossings",
+                                                                        "depth", "light", "tally");
+
+/// Whether one of the pictures is the hits themselves.
+[[nodiscard]] inline bool writes_hits(const std::vector<Picture>& pictures)
+{
+    return std::ranges::find(pictures, Picture::hits) != pictures.end();
+}
 
 /// A table or a figure of the paper that `reproduce` measures again. Three are not in the paper: rivals, our own
 /// claims about tets and BVHs; ladder, what a step costs by the size of a scene; and volume, all tets of a ray.

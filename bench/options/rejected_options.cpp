@@ -18,6 +18,7 @@ struct Renamed {
     std::string_view before, now;
 };
 constexpr Renamed renamed[] = {{Verb::check, "--picture", "--differences"},
+                               {Verb::judge, "--rays", "--ray-file"},
                                {Verb::report, "--picture", "--image"},
                                {Verb::inspect, "--require", "--require-target"}};
 

@@ -292,6 +292,7 @@ const CrossedPicture* crossed_picture(Picture picture)
     case Picture::light: return &light;
     case Picture::normals:
     case Picture::steps:
+    case Picture::hits:
     case Picture::tally: break;
     }
     return nullptr;

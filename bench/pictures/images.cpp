@@ -26,7 +26,7 @@ std::string picture_ending(const std::optional<std::filesystem::path>& out, bool
     return can_write_png ? ".png" : ".ppm";
 }
 
-void check_picture_ending(const std::optional<std::filesystem::path>& out)
+void check_picture_ending(const std::optional<std::filesystem::path>& out, const std::vector<Picture>& pictures)
 {
     if (!out || std::filesystem::is_directory(*out)) return;
     const std::string ending = out->extension().string();
@@ -34,6 +34,11 @@ void check_picture_ending(const std::optional<std::filesystem::path>& out)
         throw Error(ErrorKind::usage, fmt::format("--out '{}': accepted are a file that ends in .png, .exr or .ppm, or "
                                                   "a folder that is there",
                                                   out->string()));
+    if (ending != ".exr" && writes_hits(pictures))
+        throw Error(ErrorKind::usage,
+                    fmt::format("--out '{}': --picture hits is written as .exr only; name a file that "
+                                "ends in .exr, or a folder that is there",
+                                out->string()));
 }
 
 std::string ppm_bytes(const Pixmap& pixmap)
@@ -54,13 +59,11 @@ std::filesystem::path module_beside_program()
 
 [[noreturn]] void module_missing(const std::filesystem::path& module, const std::string& reason)
 {
-    throw Error(
-        ErrorKind::missing,
-        fmt::format(
-            "cannot write pictures: loading the images module {}: {}. It is built where OpenImageIO is "
-            "installed: install the package libopenimageio-dev, configure and build again; pictures that end in .ppm "
-            "need no module",
-            module.string(), reason));
+    throw Error(ErrorKind::missing,
+                fmt::format("cannot write pictures: loading the images module {}: {}. It is built where OpenImageIO is "
+                            "installed: install the package libopenimageio-dev, configure and build again; pictures "
+                            "other than hits can end in .ppm, which needs no module",
+                            module.string(), reason));
 }
 
 } // namespace
@@ -88,14 +91,25 @@ ImageEncoder::ImageEncoder(const std::filesystem::path& module)
 
 std::string ImageEncoder::bytes(const std::string& ending, const Pixmap& pixmap) const
 {
+    return encoded(ending, pixmap.width, pixmap.height, pixmap.pixels.data());
+}
+
+std::string ImageEncoder::bytes(const HitLayers& layers) const
+{
+    return encoded(hits_form, layers.width, layers.height, layers.pixels.data());
+}
+
+std::string ImageEncoder::encoded(const std::string& form, std::uint32_t width, std::uint32_t height,
+                                  const void* pixels) const
+{
     std::string bytes;
     const auto take = [](void* receiver, const char* data, unsigned long size) {
         static_cast<std::string*>(receiver)->assign(data, size);
     };
     std::array<char, 512> reason{};
-    if (encode_image_(ending.c_str(), pixmap.width, pixmap.height, reinterpret_cast<const float*>(pixmap.pixels.data()),
-                      take, &bytes, reason.data(), static_cast<unsigned>(reason.size())) != 0) {
-        throw Error(ErrorKind::invalid_input, fmt::format("making a picture ({}): {}", ending, reason.data()));
+    if (encode_image_(form.c_str(), width, height, pixels, take, &bytes, reason.data(),
+                      static_cast<unsigned>(reason.size())) != 0) {
+        throw Error(ErrorKind::invalid_input, fmt::format("making a picture ({}): {}", form, reason.data()));
     }
     return bytes;
 }
@@ -108,6 +122,11 @@ PictureWriter::PictureWriter(const std::string& ending)
 void PictureWriter::write(const std::filesystem::path& path, const Pixmap& pixmap) const
 {
     write_whole(path, images_ ? images_->bytes(path.extension().string(), pixmap) : ppm_bytes(pixmap));
+}
+
+void PictureWriter::write(const std::filesystem::path& path, const HitLayers& layers) const
+{
+    write_whole(path, images_.value().bytes(layers));
 }
 
 } // namespace tetrace

@@ -40,6 +40,17 @@ Colour background(std::uint32_t y, std::uint32_t height)
     return mix(top, bottom, (static_cast<float>(y) + 0.5f) / static_cast<float>(height));
 }
 
+/// Whether the ray of pixel (x, y) hit. Throws Error{internal} if it names no triangle of the mesh.
+bool has_triangle(std::uint32_t face, std::uint32_t x, std::uint32_t y, const TriangleMesh& mesh)
+{
+    if (face == NO_HIT || face == LOST) return false;
+    if (face >= mesh.triangles.size())
+        throw Error(ErrorKind::internal, fmt::format("shading pixel ({}, {}): the hit names face {}, but the mesh has "
+                                                     "{} triangles",
+                                                     x, y, face, mesh.triangles.size()));
+    return true;
+}
+
 } // namespace
 
 Colour shade(Double3 normal, Double3 to_viewer, Double3 right, Double3 up)
@@ -62,20 +73,33 @@ Pixmap shade_hits(std::span<const Hit> hits, const View& view, std::uint32_t wid
     for (std::uint32_t y = 0; y < height; ++y) {
         for (std::uint32_t x = 0; x < width; ++x) {
             const std::uint32_t face = hits[std::size_t{y} * width + x].face_id;
-            if (face == NO_HIT || face == LOST) {
+            if (!has_triangle(face, x, y, mesh)) {
                 pixmap.at(x, y) = face == LOST ? lost_colour() : background(y, height);
                 continue;
-            }
-            if (face >= mesh.triangles.size()) {
-                throw Error(ErrorKind::internal, fmt::format("shading pixel ({}, {}): the hit names face {}, but the "
-                                                             "mesh has {} triangles",
-                                                             x, y, face, mesh.triangles.size()));
             }
             const Double3 to_viewer = frame.to_viewer(x, y);
             pixmap.at(x, y) = shade(normal_towards(to_viewer, mesh, face), to_viewer, frame.right, frame.up);
         }
     }
     return pixmap;
+}
+
+HitLayers layers_of_hits(std::span<const Hit> hits, const View& view, std::uint32_t width, std::uint32_t height,
+                         const TriangleMesh& mesh)
+{
+    const ViewFrame frame(view);
+    HitLayers layers{width, height, {}};
+    layers.pixels.reserve(hits.size());
+    for (std::uint32_t y = 0; y < height; ++y) {
+        for (std::uint32_t x = 0; x < width; ++x) {
+            const Hit& hit = hits[std::size_t{y} * width + x];
+            const Double3 normal = has_triangle(hit.face_id, x, y, mesh)
+                                       ? normal_towards(frame.to_viewer(x, y), mesh, hit.face_id)
+                                       : Double3{};
+            layers.pixels.push_back({hit.t, hit.steps, to_float(normal), hit.face_id});
+        }
+    }
+    return layers;
 }
 
 } // namespace tetrace

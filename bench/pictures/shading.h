@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bench/pictures/hit_layers.h"
 #include "bench/pictures/pixmap.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/rays/camera.h"
@@ -19,5 +20,10 @@ namespace tetrace {
 /// mesh, or was never written.
 [[nodiscard]] Pixmap shade_hits(std::span<const Hit> hits, const View& view, std::uint32_t width, std::uint32_t height,
                                 const TriangleMesh& mesh);
+
+/// The hits of a view, each with the normal of its triangle; to_viewer for a triangle without area. Throws as
+/// shade_hits() does.
+[[nodiscard]] HitLayers layers_of_hits(std::span<const Hit> hits, const View& view, std::uint32_t width,
+                                       std::uint32_t height, const TriangleMesh& mesh);
 
 } // namespace tetrace

@@ -84,6 +84,11 @@ public:
     {
     }
 
+    [[nodiscard]] SearchRays rays_of_batch(std::size_t batch) const
+    {
+        return search_rays(static_cast<std::uint32_t>(batch) * run_->batch_tets, tets_of(batch), run_->size.rays);
+    }
+
 private:
     [[nodiscard]] json head_of(std::size_t part) const override { return {{"batch", run_->shard.part(part)}}; }
 
@@ -192,7 +197,7 @@ private:
     void load(std::size_t batch)
     {
         if (loaded_ == batch) return;
-        rays_ = search_rays(static_cast<std::uint32_t>(batch) * run_->batch_tets, tets_of(batch), run_->size.rays);
+        rays_ = rays_of_batch(batch);
         references_.forget();
         judged_.clear();
         loaded_ = batch;
@@ -255,7 +260,9 @@ void run_searches(SearchRun& run, const Options& options, const Recording& share
 {
     BatchRecorder recorder(run, options, shared);
     const std::size_t batches = run.shard.share(batch_count(run.size));
-    static_cast<void>(recorder.restore());
+    if (const std::size_t restored = recorder.restore(); restored < batches && shared.budget->is_limited())
+        shared.budget->plan_batches(run.rows, options.samples, options.sample_s, batches - restored,
+                                    recorder.rays_of_batch(run.shard.part(0)).quads);
     const std::size_t done = recorder.run(batches, "exit searches");
     if (done == batches) return;
     run.batches_done = static_cast<std::uint32_t>(done);

@@ -34,11 +34,11 @@ struct SearchRun : RecordedRows {
 [[nodiscard]] SearchRun recorded_search_run(const Options& options, const std::vector<RowRecord>& rows);
 
 /// Does every batch with every row. Compares each face with openmp's and judges it by exact arithmetic, outside the
-/// timing; then times the batch and appends it to the journal. Batches that are in the journal are taken from there.
-/// In the images, a ray is a search, and what agrees is right. The first wrong or different search gives its tet as the
-/// view, its number among the tet's rays as x, and local faces; reference_face: the least of the faces through which it
-/// exactly leaves.
-/// Throws Error{usage} if the journal belongs to other searches or rows.
+/// timing; then times the batch and appends it to the journal. Rows that do not fit the budget are skipped. Batches
+/// that are in the journal are taken from there. In the images, a ray is a search, and what agrees is right. The first
+/// wrong or different search gives its tet as the view, its number among the tet's rays as x, and local faces;
+/// reference_face: the least of the faces through which it exactly leaves. Throws Error{usage} if the journal belongs
+/// to other searches or rows.
 void run_searches(SearchRun& run, const Options& options, const Recording& shared);
 
 } // namespace tetrace

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t oldest_schema_version = 1;
 constexpr std::size_t longest_name = 1000; // of a row, in bytes
-constexpr std::uint64_t largest_side = 16384, most_threads = 4096;
+constexpr std::uint64_t max_side = 16384, max_threads = 4096;
 
 std::string line_or_nothing(const ResultValue& object, const char* key)
 {
@@ -71,8 +71,8 @@ ResultScene read_scene(const ResultValue& value)
     if (const auto hash = value.find("camera_set_hash")) scene.camera_set_hash = hash->hash();
     for (const ResultValue& view : value.at("views").items())
         scene.views.push_back(view.count());
-    scene.width = count_up_to(largest_side, value.at("width"));
-    scene.height = count_up_to(largest_side, value.at("height"));
+    scene.width = count_up_to(max_side, value.at("width"));
+    scene.height = count_up_to(max_side, value.at("height"));
     return scene;
 }
 
@@ -115,7 +115,7 @@ ResultRow read_any_row(const ResultValue& value)
         row.driver = line_or_nothing(*device, "driver");
         if (const auto index = value.find("device_index")) row.device_index = index->count();
     }
-    if (const auto threads = value.find("threads")) row.threads = count_up_to(most_threads, *threads);
+    if (const auto threads = value.find("threads")) row.threads = count_up_to(max_threads, *threads);
     if (const auto launches = value.find("launches_in_flight")) row.in_flight = count_up_to(max_in_flight, *launches);
     row.samples_s = read_samples(value);
     if (const auto times = value.find("times")) {

@@ -303,9 +303,9 @@ void require_in_flight(const Options& options, const std::vector<RowKey>& rows)
     const auto has_it = [&](const RowKey& key) { return key.in_flight == options.launches_in_flight; };
     if (std::ranges::any_of(rows, has_it)) return;
     throw Error(ErrorKind::usage,
-                fmt::format("--launches-in-flight {}: no selected row can have several; a processor's threads (openmp, "
-                            "embree) begin a launch when the one before it has ended, and the sums of --task tally are "
-                            "those of one launch; select opencl, vulkan, cuda or cuda-host, and another task",
+                fmt::format("--launches-in-flight {}: no selected row can have several; devices of kind cpu "
+                            "begin a launch when the one before it has ended, and the sums of --task tally are "
+                            "those of one launch; select a device of another kind, and another task",
                             options.launches_in_flight));
 }
 

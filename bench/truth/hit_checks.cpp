@@ -32,10 +32,7 @@ std::uint64_t max_ulps(const Hit& a, const Hit& b)
 
 void RayTotals::add(const RayTotals& other)
 {
-    for (const auto count :
-         {&RayTotals::rays, &RayTotals::hits, &RayTotals::misses, &RayTotals::lost, &RayTotals::unwritten,
-          &RayTotals::hit_steps, &RayTotals::miss_steps, &RayTotals::lost_steps, &RayTotals::reversed,
-          &RayTotals::length_units, &RayTotals::absorbed, &RayTotals::light_units})
+    for (const auto count : counts_of_totals)
         this->*count += other.*count;
 }
 

@@ -3,6 +3,7 @@
 #include "core/rays/hit.h"
 
 #include <cstdint>
+#include <iterator>
 #include <optional>
 #include <span>
 
@@ -26,6 +27,12 @@ struct RayTotals {
     [[nodiscard]] std::uint64_t steps() const { return hit_steps + miss_steps + lost_steps; }
     void add(const RayTotals& other);
 };
+/// All of them, in the order in which a journal has them.
+inline constexpr std::uint64_t RayTotals::*counts_of_totals[] = {
+    &RayTotals::rays,      &RayTotals::hits,         &RayTotals::misses,     &RayTotals::lost,
+    &RayTotals::unwritten, &RayTotals::hit_steps,    &RayTotals::miss_steps, &RayTotals::lost_steps,
+    &RayTotals::reversed,  &RayTotals::length_units, &RayTotals::absorbed,   &RayTotals::light_units};
+static_assert(sizeof(RayTotals) == sizeof(std::uint64_t) * std::size(counts_of_totals));
 [[nodiscard]] RayTotals count_rays(std::span<const Hit> hits);
 /// The same for answers of task segments: a hit is a ray that crosses the domain, a step a tet that it leaves.
 [[nodiscard]] RayTotals count_segments(std::span<const Hit> answers);

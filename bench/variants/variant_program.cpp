@@ -73,4 +73,14 @@ std::filesystem::path VariantProgram::write(const std::string& text, const std::
                                                printable_text(outcome.out + outcome.errors)));
 }
 
+std::vector<std::string> backends_with_texts()
+{
+    std::vector<std::string> names;
+    for (const Backend* backend : direct_backends())
+        if (std::ranges::any_of(all_kernels(),
+                                [&](const KernelId& kernel) { return !backend->kernel_files(kernel).empty(); }))
+            names.push_back(backend->name());
+    return names;
+}
+
 } // namespace tetrace

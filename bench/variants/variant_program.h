@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace tetrace {
 
@@ -41,5 +42,9 @@ private:
     Source source_;
     VariantText text_;
 };
+
+/// The backends with texts that a compiler can be given here; kernels of the others are parts of this program. Loads no
+/// driver.
+[[nodiscard]] std::vector<std::string> backends_with_texts();
 
 } // namespace tetrace

@@ -5,6 +5,8 @@
 #include "bench/terminal/interrupts.h"
 #include "core/base/hash.h"
 #include "core/base/printable.h"
+#include "core/device/defects.h"
+#include "core/isolation/isolation.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -86,8 +88,8 @@ private:
     /// A failure without a differing ray is that of the first one.
     [[nodiscard]] std::string command_of(const VariantFailure& failure) const override
     {
-        const std::string& backend = row_->key.backend;
-        if (backend != "opencl" && backend != "vulkan") return VariantTrials::command_of(failure); // no case of a ray
+        if (!has_case_host(backend_named(row_->key.backend, direct_backends())))
+            return VariantTrials::command_of(failure); // no case of a ray
         const DifferingRay ray = failure.first_different.value_or(DifferingRay{row_->scene->view_numbers().front()});
         const std::string dump = dump_command(*row_, ray.view, ray.x, ray.y);
         if (dump.empty()) return {};

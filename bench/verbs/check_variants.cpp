@@ -2,6 +2,7 @@
 #include "bench/options/identity.h"
 #include "bench/terminal/interrupts.h"
 #include "bench/terminal/progress.h"
+#include "bench/variants/variant_program.h"
 #include "bench/variants/variant_report.h"
 #include "bench/variants/variant_run.h"
 #include "bench/verbs/commands.h"
@@ -42,10 +43,10 @@ void require_variants(const std::vector<VariantRow>& rows, const std::vector<std
 std::vector<RowKey> keys_of(const Options& options)
 {
     std::vector<RowKey> keys = selected_rows(options, [](const std::string&) { return true; });
-    constexpr std::string_view compiling[] = {"opencl", "vulkan", "cuda", "cuda-host"};
+    const std::vector<std::string> compiling = backends_with_texts();
     if (options.backends.empty())
-        std::erase_if(
-            keys, [&](const RowKey& key) { return std::ranges::find(compiling, key.backend) == std::end(compiling); });
+        std::erase_if(keys,
+                      [&](const RowKey& key) { return std::ranges::find(compiling, key.backend) == compiling.end(); });
     if (keys.empty())
         throw Error(ErrorKind::missing,
                     fmt::format("--variants: no device of {} has a selected row", fmt::join(compiling, ", ")));

@@ -100,7 +100,7 @@ void write_judged_junit(const Options& options, std::string xml)
 void require_files(const Options& options)
 {
     require_one_mesh(options, "--mesh MESH");
-    if (!options.ray_file) throw Error(ErrorKind::usage, "judge: --rays FILE.npy is missing: which rays?");
+    if (!options.ray_file) throw Error(ErrorKind::usage, "judge: --ray-file FILE.npy is missing: which rays?");
     if (!options.hit_file) throw Error(ErrorKind::usage, "judge: --hits FILE.npy is missing: whose answers?");
     check_output(options);
     if (options.out) check_not_an_input(*options.out, {*options.ray_file, *options.hit_file});

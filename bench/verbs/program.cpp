@@ -3,6 +3,7 @@
 #include "bench/options/help.h"
 #include "bench/terminal/progress.h"
 #include "bench/terminal/text.h"
+#include "bench/variants/variant_program.h"
 #include "bench/verbs/commands.h"
 #include "bench/verbs/process_limits.h"
 #include "bench/verbs/ranks.h"
@@ -138,7 +139,7 @@ int run_program(const std::vector<std::string>& arguments)
         if (is_timed && !options.list && options.threads != 1 && !this_rank()) start_again_if_busy(arguments);
         const auto cache = cache_of(options.verb);
         set_isolation(options.isolation, options.driver_limit_s,
-                      options.variants > 0 ? std::vector<std::string>{"cuda-host"} : std::vector<std::string>{});
+                      options.variants > 0 ? backends_with_texts() : std::vector<std::string>{});
         return run_verb_or_rank(options);
     } catch (const Error& error) {
         say(std::string("tetrace: ") + error.what());

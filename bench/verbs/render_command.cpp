@@ -22,18 +22,22 @@ std::vector<Picture> wanted_pictures(const Options& options)
     return options.pictures.empty() ? std::vector{Picture::normals} : options.pictures;
 }
 
-/// Writes the pictures of a run, all in the same format, and prints the names of their files.
+/// Writes the pictures of a run, all but hits in the same format, and prints the names of their files.
 class PictureFiles {
 public:
     explicit PictureFiles(const Options& options)
-        : options_(&options), ending_(picture_ending(options.out, has_images_module())), writer_(ending_)
+        : options_(&options), ending_(picture_ending(options.out, has_images_module())),
+          writer_(writes_hits(options.pictures) ? ".exr" : ending_)
     {
     }
 
-    void write(const PictureKey& key, bool only_picture, const Pixmap& pixmap) const
+    /// picture: a Pixmap or HitLayers.
+    template <class Image>
+    void write(const PictureKey& key, bool only_picture, const Image& picture) const
     {
-        const auto path = picture_path(options_->out, key, ending_, only_picture);
-        writer_.write(path, pixmap);
+        const std::string ending = key.picture == Picture::hits ? ".exr" : ending_;
+        const auto path = picture_path(options_->out, key, ending, only_picture);
+        writer_.write(path, picture);
         print(path.string() + "\n");
     }
 
@@ -43,10 +47,14 @@ private:
     PictureWriter writer_;
 };
 
-/// The first row that the options select, with its session open.
+/// The first row that the options select, with its session open: of BVHs where tets are missing and nobody asks for
+/// them.
 RowRun open_first_row(SceneWork& scene, const Options& options)
 {
-    RowRun row = open_row(select_rows(options, {scene.label()}).front(), scene, options);
+    Options chosen = options;
+    if (scene.loaded().no_tets && options.structures.empty() && options.methods.empty() && options.layouts.empty())
+        chosen.structures = {Structure::bvh};
+    RowRun row = open_row(select_rows(chosen, {scene.label()}).front(), scene, chosen);
     if (row.session == nullptr)
         throw Error(ErrorKind::missing, fmt::format("rendering {}: {}", row_name(row.key), reason_of(row)));
     return row;
@@ -93,12 +101,12 @@ void refuse_steps_without_tets(const RowRun& row, const std::vector<Picture>& pi
                         fmt::format("--picture steps: {} counts no steps; use --structure cdt", row_name(row.key)));
 }
 
-/// Warns of lost rays, because a picture shows them only as a few magenta pixels.
+/// Warns of lost rays, because a picture shows them only as a few pixels.
 void tell_lost_rays(const RowRun& row, std::size_t view, std::span<const Hit> hits)
 {
     if (const std::uint64_t lost = count_rays(hits).lost; lost > 0)
-        say(fmt::format("{}, view {}: {} rays are lost; they are drawn in magenta", row_name(row.key),
-                        row.scene->view_numbers()[view], lost));
+        say(fmt::format("{}, view {}: {} rays are lost; they are drawn in magenta, and have face {} in hits",
+                        row_name(row.key), row.scene->view_numbers()[view], lost, LOST));
 }
 
 /// The task of the rows that cross tets for a picture; none for pictures of hits.
@@ -223,6 +231,11 @@ Pixmap draw(Picture picture, const std::vector<StepsImage>& images, const SceneW
                       scene.loaded().scene.mesh); // all kinds of tets show the same
 }
 
+HitLayers layers_of(const StepsImage& image, const SceneWork& scene, std::size_t view)
+{
+    return layers_of_hits(image.hits, scene.views()[view], scene.width(), scene.height(), scene.loaded().scene.mesh);
+}
+
 void render_subject(Subject& subject, const Options& options, const PictureFiles& files, bool only_scene)
 {
     const auto pictures = wanted_pictures(options);
@@ -235,10 +248,14 @@ void render_subject(Subject& subject, const Options& options, const PictureFiles
                              static_cast<double>(view) / static_cast<double>(scene.views().size()));
         const auto images = trace_all(subject, view);
         for (const Picture picture : pictures) {
-            files.write({scene.label(), scene.view_numbers()[view], picture}, only_picture,
-                        crossing_task(picture)
-                            ? draw_steps(cross_for(picture, subject, view), scene.width(), scene.height())
-                            : draw(picture, images, scene, view));
+            const PictureKey key{scene.label(), scene.view_numbers()[view], picture};
+            if (picture == Picture::hits)
+                files.write(key, only_picture, layers_of(images.front(), scene, view));
+            else if (crossing_task(picture))
+                files.write(key, only_picture,
+                            draw_steps(cross_for(picture, subject, view), scene.width(), scene.height()));
+            else
+                files.write(key, only_picture, draw(picture, images, scene, view));
         }
     }
 }
@@ -247,7 +264,7 @@ void render_subject(Subject& subject, const Options& options, const PictureFiles
 
 int render_command(const Options& options)
 {
-    check_picture_ending(options.out);
+    check_picture_ending(options.out, options.pictures);
     const PictureFiles files(options); // first: without it, tracing is pointless
     for (const std::string& reason : missing_default_scenes(options))
         say(reason);

@@ -117,10 +117,11 @@ void run_scene(Reproduction& all, const SceneBuild& build, const Options& option
     add_devices(all, run, options, keeping.yardsticks);
 }
 
-void run_all_searches(Reproduction& all, const Options& options, Keeping& keeping)
+void run_all_searches(Reproduction& all, const Options& options, Keeping& keeping, double budget_s)
 {
     SearchRun& run = all.searches.emplace(open_search_run(options));
-    run_searches(run, options, {keeping.journal.get(), &all.progress, &keeping.watch});
+    Budget budget(budget_s);
+    run_searches(run, options, {keeping.journal.get(), &all.progress, &keeping.watch, &budget});
     for (RowRun& row : run.rows)
         row.session.reset();
     add_devices(all, run, options, keeping.yardsticks);
@@ -223,13 +224,14 @@ int reproduce_paper(const Options& asked, JudgedRows& judged)
         say(sentence);
     all.progress.all = parts_of(builds, options, searches);
     double left_s = options.budget_s;
-    for (std::size_t i = 0; i < builds.size(); ++i) {
+    std::size_t shares = builds.size() + (searches ? 1 : 0);
+    for (const SceneBuild& build : builds) {
         if (is_interrupted()) break;
         const Stopwatch watch;
-        run_scene(all, builds[i], options, keeping, left_s / static_cast<double>(builds.size() - i));
+        run_scene(all, build, options, keeping, left_s / static_cast<double>(shares--));
         left_s = std::max(1.0, left_s - watch.seconds());
     }
-    if (searches && !is_interrupted()) run_all_searches(all, options, keeping);
+    if (searches && !is_interrupted()) run_all_searches(all, options, keeping, left_s);
     judge_steadiness(all, keeping.watch);
     make_tables(all, options);
     judged.set(all_rows(all));

@@ -167,6 +167,11 @@ const Defect* find_defect(std::string_view name)
     return defect == defects.end() ? nullptr : &*defect;
 }
 
+bool has_case_host(const Backend& backend)
+{
+    return backend.defect_case(all_defects().front().name, {}).has_value();
+}
+
 std::vector<std::uint32_t> defect_words(const DefectLaunch& launch)
 {
     std::vector<std::uint32_t> counting(word_count);

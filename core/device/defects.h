@@ -18,7 +18,8 @@ struct DefectLaunch {
     [[nodiscard]] std::uint64_t large_bytes() const { return std::uint64_t{large_words} * sizeof(std::uint32_t); }
 };
 
-struct Device; // core/device/backend.h
+class Backend; // core/device/backend.h
+struct Device;
 
 /// What a stressor needs that not every device has: ballots of subgroups; a fence between groups; a large buffer, of a
 /// fixed size or as large as the device admits.
@@ -68,6 +69,9 @@ struct ChosenDefect {
 
 /// Null if there is none of that name.
 [[nodiscard]] const Defect* find_defect(std::string_view name);
+
+/// Whether the backend has a host that runs a case without tetrace (Backend::tile_case(), Backend::defect_case()).
+[[nodiscard]] bool has_case_host(const Backend& backend);
 
 /// The words that every kernel reads: 0, 1, ... 63, the number of items, and that of the words of a large buffer.
 [[nodiscard]] std::vector<std::uint32_t> defect_words(const DefectLaunch& launch);

@@ -22,6 +22,9 @@ void set_isolation(Isolation isolation, double call_limit_s, const std::vector<s
 /// Whether it was decided for Isolation::device.
 [[nodiscard]] bool is_isolated();
 
+/// Names of the backends of this build whose drivers are not ours.
+[[nodiscard]] const std::vector<std::string>& foreign_backends();
+
 /// The backends, those with drivers that are not ours in processes of their own. foreign: the names of these.
 [[nodiscard]] std::vector<Backend*> isolated(const std::vector<Backend*>& backends,
                                              const std::vector<std::string>& foreign);

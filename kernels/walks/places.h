@@ -28,7 +28,7 @@ KERNEL_FN real sum_of(Vec3 a)
     return sum;
 }
 
-KERNEL_FN real largest_of(Vec3 a)
+KERNEL_FN real max_of(Vec3 a)
 {
     return maximum(maximum(magnitude(a.x), magnitude(a.y)), magnitude(a.z));
 }
@@ -129,9 +129,9 @@ KERNEL_FN Vec3 corner_weights(Sheared p0, Sheared p1, Sheared p2)
     Vec3 sides = magnitudes(areas);
     Vec3 x = VEC3(p0.x, p1.x, p2.x);
     Vec3 y = VEC3(p0.y, p1.y, p2.y);
-    bool is_high = largest_of(y) > largest_of(x);
+    bool is_high = max_of(y) > max_of(x);
     Vec3 h = VEC3(is_high ? y.x : x.x, is_high ? y.y : x.y, is_high ? y.z : x.z);
-    real size = largest_of(h);
+    real size = max_of(h);
     PRECISE real least = size * size * FLAT_SHARE;
     Vec3 edge_on = weights_edge_on(h);
     real area = sum_of(areas);

@@ -155,6 +155,12 @@ void GltfFile::require_readable() const
     if (!text.starts_with("2."))
         source_.fail("header", fmt::format("it is glTF {:.20}, which is not read", text),
                      "convert it to glTF 2.0, for example with Blender");
+    if (const Json& least = member(member(root_, "asset"), "minVersion"); !least.is_null()) {
+        const std::string number = least.is_string() ? least.get_ref<const std::string&>() : least.dump();
+        if (!(parse_number(number).value_or(3) <= 2)) // not a number: of a later version
+            source_.fail("header", fmt::format("it requires glTF {:.20} (asset.minVersion), which is not read", number),
+                         "export it as glTF 2.0, for example with Blender");
+    }
     for (const Json& name : list("extensionsRequired"))
         if (!name.is_string() || !is_harmless(name.get_ref<const std::string&>()))
             source_.fail("header",

@@ -5,11 +5,14 @@
 #include "scenes/builder/mesh_source.h"
 #include "scenes/gltf_buffers.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 namespace tetrace {
 namespace {
@@ -32,7 +35,29 @@ std::string read_bytes(const std::filesystem::path& path)
 std::string_view without_byte_order_mark(std::string_view bytes, const std::string& extension)
 {
     constexpr std::string_view mark = "\xEF\xBB\xBF";
-    return bytes.starts_with(mark) && extension != ".stl" ? bytes.substr(mark.size()) : bytes;
+    if (!bytes.starts_with(mark)) return bytes;
+    const std::string_view text = bytes.substr(mark.size());
+    const bool is_text = lower_case(text.substr(0, 5)) == "solid" && text.find('\0') == std::string_view::npos;
+    return extension != ".stl" || is_text ? text : bytes;
+}
+
+bool is_utf_16(std::string_view bytes, const std::string& extension)
+{
+    if (extension != ".stl") return bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF");
+    const std::string begin = lower_case(bytes.substr(0, 12));
+    return begin == std::string_view("\xFF\xFEs\0o\0l\0i\0d\0", 12) ||
+           begin == std::string_view("\xFE\xFF\0s\0o\0l\0i\0d", 12);
+}
+
+// OFF may lack its keyword, and then begins with its numbers of vertices, faces and perhaps edges.
+bool begins_as_off(std::string_view bytes)
+{
+    std::vector<std::string_view> words;
+    if (!LineReader(bytes).next(words)) return false;
+    const auto is_integer = [](std::string_view word) { return parse_integer(word).has_value(); };
+    const bool is_counts = words.size() == 2 || words.size() == 3;
+    return (is_counts && std::all_of(words.begin(), words.end(), is_integer)) ||
+           lower_case(words.front()).find("off") != std::string::npos;
 }
 
 // Of a name without extension, as a pipe has. OBJ has nothing that it begins with.
@@ -47,7 +72,7 @@ std::string format_of(std::string_view bytes)
     if (begin.starts_with("# vtk")) return ".vtk";
     if (begin.starts_with("<?xml") || begin.starts_with("<vtkfile")) return ".vtu";
     if (begin.starts_with("solid") || bytes.substr(0, 200).find('\0') != std::string_view::npos) return ".stl";
-    return begin.substr(0, begin.find(' ')).find("off") != std::string::npos ? ".off" : ".obj";
+    return begins_as_off(bytes) ? ".off" : ".obj";
 }
 
 void read_as(const std::string& extension, MeshSource& source)
@@ -73,7 +98,10 @@ MeshSoup parse(const std::filesystem::path& path, std::string_view bytes, const 
     std::string extension = lower_case(path.extension().string());
     MeshSource source(path.string(), without_byte_order_mark(bytes, extension), folder);
     if (bytes.empty()) source.fail("file", "it is empty");
-    if (extension != ".stl" && (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")))
+    if (bytes.starts_with("\x1F\x8B\x08"))
+        source.fail("file", "it is compressed by gzip",
+                    "unpack it: zcat FILE > NEW, or zcat FILE | tetrace build --scene /dev/stdin");
+    if (is_utf_16(bytes, extension))
         source.fail("file", "its text is UTF-16", "convert it: iconv -f UTF-16 -t UTF-8 FILE > NEW");
     if (extension.empty()) extension = format_of(source.bytes());
     read_as(extension, source);

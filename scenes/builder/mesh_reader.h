@@ -33,7 +33,7 @@ inline constexpr double max_rounding = 0x1p-20;
 /// MEDIT's .mesh, Gmsh's .msh, TetGen's .node and .ele of one folder, legacy VTK; all but Gmsh's as text only. A
 /// .node file without tets has those of Delaunay: a tet's region is the smallest boundary marker of its corners. The
 /// format is chosen by the extension and verified by the content; by the content alone if there is no extension. A
-/// UTF-8 byte order mark is skipped, but in STL; lines end with LF, CR LF or CR. Polygons are cut into triangles
+/// UTF-8 byte order mark is skipped, but in binary STL; lines end with LF, CR LF or CR. Polygons are cut into triangles
 /// (cut_polygon) when all vertices are known. Coordinates are read as doubles and rounded to float once. Throws
 /// Error{missing} if the file does not exist, and Error{invalid_input} that names file, element and remedy for: an
 /// unknown format, a truncated file, a count that the file cannot hold, a NaN, infinite or too large coordinate, an

@@ -333,13 +333,25 @@ std::string lower_case(std::string_view word)
     return text;
 }
 
+namespace {
+
+// "0,5", or "1,2,3" for three numbers.
+bool is_number_with_commas(std::string_view word)
+{
+    if (word.find(',') == std::string_view::npos || word.find_first_not_of(',') == std::string_view::npos) return false;
+    for (std::size_t begin = 0, end = 0; begin < word.size(); begin = end + 1) {
+        end = std::min(word.find(',', begin), word.size());
+        if (end > begin && !parse_number(word.substr(begin, end - begin))) return false;
+    }
+    return true;
+}
+
+} // namespace
+
 double parse_coordinate(const MeshSource& source, std::string_view word, const std::string& place)
 {
     if (const auto value = parse_number(word)) return *value;
-    const auto comma = word.find(',');
-    std::string with_point(word);
-    if (comma != std::string_view::npos) with_point[comma] = '.';
-    if (comma != std::string_view::npos && parse_number(with_point))
+    if (is_number_with_commas(word))
         source.fail(place, fmt::format("'{:.40}' has a comma", word),
                     "write numbers with a decimal point, and nothing between them but blanks: export the mesh again, "
                     "in the locale C");
@@ -349,8 +361,10 @@ double parse_coordinate(const MeshSource& source, std::string_view word, const s
 Double3 parse_position(const MeshSource& source, const std::vector<std::string_view>& words, std::size_t first,
                        const std::string& place)
 {
-    if (words.size() < first + 3) source.fail(place, "fewer than three coordinates");
-    const auto coordinate = [&](std::size_t axis) { return parse_coordinate(source, words[first + axis], place); };
+    const auto coordinate = [&](std::size_t axis) {
+        if (words.size() <= first + axis) source.fail(place, "fewer than three coordinates");
+        return parse_coordinate(source, words[first + axis], place);
+    };
     return {coordinate(0), coordinate(1), coordinate(2)};
 }
 

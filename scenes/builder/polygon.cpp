@@ -62,6 +62,20 @@ public:
         return turn(a, b, other) >= 0 && turn(b, c, other) >= 0 && turn(c, a, other) >= 0;
     }
     [[nodiscard]] bool same_place(std::size_t a, std::size_t b) const { return points_[a] == points_[b]; }
+    // Exact, and in space.
+    [[nodiscard]] bool is_on_line() const
+    {
+        const auto point = [&](std::size_t corner) {
+            const Double3 v = to_double(corners_[corner]);
+            return Kernel::Point_3(v.x, v.y, v.z);
+        };
+        std::size_t second = 1;
+        while (second < size() && same_vertex(0, second))
+            ++second;
+        for (std::size_t i = second + 1; i < size(); ++i)
+            if (!CGAL::collinear(point(0), point(second), point(i))) return false;
+        return true;
+    }
     // The same place in space, not only in the projection.
     [[nodiscard]] bool same_vertex(std::size_t a, std::size_t b) const { return corners_[a] == corners_[b]; }
 
@@ -287,9 +301,10 @@ private:
     Triangles triangles_;
 };
 
-// Of a polygon that has an inside only once.
+// Of a polygon that has an inside only once. Without an area, it has none, and its projection may be on a line.
 bool areas_add_up(const FlatPolygon& polygon, const Triangles& triangles)
 {
+    if (polygon.area() == 0) return polygon.is_on_line();
     double sum = 0;
     for (const auto& [a, b, c] : triangles)
         sum += std::abs(polygon.area(a, b, c));

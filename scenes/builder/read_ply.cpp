@@ -50,7 +50,8 @@ Scalar parse_type(const MeshSource& source, std::string_view word, const std::st
                                                            "int32", "uint32", "float32", "float64"};
     for (std::size_t i = 0; i < old_names.size(); ++i)
         if (word == old_names[i] || word == new_names[i]) return static_cast<Scalar>(i);
-    source.fail(place, fmt::format("'{:.40}' is not a type of PLY", word));
+    source.fail(place, fmt::format("the type '{:.40}' is not read", word),
+                "export the mesh again, with integers as int and other numbers as float or double");
 }
 
 Encoding parse_encoding(const MeshSource& source, const Words& words, const std::string& place)

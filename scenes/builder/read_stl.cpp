@@ -139,6 +139,14 @@ private:
     std::string name_;
 };
 
+// No facet may be lost.
+bool has_facet(StlWords& words)
+{
+    for (std::string word; words.next(word);)
+        if (word == "facet") return true;
+    return false;
+}
+
 void read_ascii(MeshSource& source)
 {
     StlWords words(source.bytes());
@@ -153,8 +161,10 @@ void read_ascii(MeshSource& source)
             inside = !word.starts_with("end");
             words.skip_name();
         } else {
-            source.fail(words.place(facet),
-                        fmt::format("'{:.40}' where {} should come", word, inside ? "'facet'" : "'solid'"));
+            const std::string place = words.place(facet);
+            if (inside || facets == 0 || word == "facet" || has_facet(words))
+                source.fail(place, fmt::format("'{:.40}' where {} should come", word, inside ? "'facet'" : "'solid'"));
+            source.note("text after the last endsolid was ignored");
         }
     }
     if (inside) source.fail(words.place("end"), "the file ends before 'endsolid'");

@@ -1,15 +1,78 @@
-#include "scenes/procedural/cube_grid.h"
+// Cubes and lattices: grids of cubes, each cut into six tets. No mesh, no TetGen.
+#include "core/base/control_groups.h"
+#include "core/base/error.h"
+#include "core/mesh/scene.h"
+#include "scenes/catalogue.h"
+#include "scenes/procedural.h"
+#include "scenes/scramble.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace tetrace {
 
 namespace {
+
+/// Makes scenes of a jittered grid of resolution^3 cubes that fills its domain. Each cube is cut into six tets round
+/// its main diagonal (Kuhn 1960; also Freudenthal's cut): one tet for each order in which a path from the low corner to
+/// the high corner takes the three axes. The cut of all cubes is the same, so squares between them are cut along the
+/// same diagonal on both sides, and every neighbour has a closed form. Time and memory are linear in the number of
+/// tets.
+class CubeGrid {
+public:
+    /// A cube, by its place along each axis.
+    using Cell = std::array<std::int32_t, 3>;
+
+    /// resolution: 2 to 563; half-faces of 30 bits name no more tets.
+    explicit CubeGrid(std::uint32_t resolution) : n_(static_cast<std::int32_t>(resolution)) {}
+
+    /// A scene whose occlusive faces are those between cubes that are solid and cubes that are not, wound outwards.
+    /// is_solid: asked only of cubes of the grid. Reproducible bit for bit. The domain's divisions are the resolution
+    /// up to 128; above that, each square has as many cubes along its sides as needed.
+    [[nodiscard]] Scene make(const std::string& name, const std::function<bool(const Cell&)>& is_solid);
+
+private:
+    /// The place of line i of n even ones in units of 2^-20: 2^21 i / n - 2^20, rounded.
+    [[nodiscard]] static std::int32_t place(std::int32_t i, std::int32_t n)
+    {
+        return ((1 << 21) * i + n / 2) / n - (1 << 20);
+    }
+    [[nodiscard]] std::int32_t line(std::int32_t i) const { return place(i, n_); }
+    [[nodiscard]] bool in_grid(const Cell& cube) const
+    {
+        for (const std::int32_t i : cube)
+            if (i < 0 || i >= n_) return false;
+        return true;
+    }
+    [[nodiscard]] std::uint32_t vertex_index(const Cell& at) const
+    {
+        return static_cast<std::uint32_t>((at[2] * (n_ + 1) + at[1]) * (n_ + 1) + at[0]);
+    }
+    [[nodiscard]] std::uint32_t tet_index(const Cell& cube, std::uint32_t order) const
+    {
+        return 6 * static_cast<std::uint32_t>((cube[2] * n_ + cube[1]) * n_ + cube[0]) + order;
+    }
+
+    void make_lines();
+    void make_vertices();
+    void make_tets();
+    [[nodiscard]] Tet make_tet(const Cell& cube, std::uint32_t order) const;
+    [[nodiscard]] std::uint32_t outer_half_face(const Cell& cube, std::uint32_t axis, std::int32_t step,
+                                                std::uint32_t order, std::uint32_t path_vertex) const;
+    [[nodiscard]] Cell cube_of(std::uint32_t tet) const;
+    void mark(const std::function<bool(const Cell&)>& is_solid);
+    void add_triangle(std::uint32_t tet, std::uint32_t face, std::vector<std::uint32_t>& mesh_index);
+
+    std::int32_t n_;
+    Scene scene_;
+};
 
 constexpr std::int32_t max_divisions = 128; // as in scenes/scene_file.cpp: the entry grid grows with their square
 
@@ -32,8 +95,6 @@ constexpr std::uint32_t local(std::uint32_t order, std::uint32_t step)
 
 /// Corners of each local face, counter-clockwise seen from outside a tet with det < 0.
 constexpr std::array<std::array<std::uint32_t, 3>, 4> outward = {{{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}}};
-
-} // namespace
 
 Scene CubeGrid::make(const std::string& name, const std::function<bool(const Cell&)>& is_solid)
 {
@@ -162,19 +223,6 @@ void CubeGrid::add_triangle(std::uint32_t tet, std::uint32_t face, std::vector<s
     scene_.tets.tets[half_face_tet(half_face)].faces[half_face_index(half_face)] = id;
 }
 
-} // namespace tetrace
-
-// A blocky ball in a grid of cubes.
-#include "core/base/error.h"
-#include "scenes/procedural.h"
-#include "scenes/procedural/cube_grid.h"
-
-#include <fmt/format.h>
-
-namespace tetrace {
-
-namespace {
-
 /// Centres within 0.6 of the box's half-size, in integers. Two cubes along an axis have none that near: there one cube
 /// represents the ball, and its surface is open towards the domain's boundary.
 bool in_ball(const CubeGrid::Cell& cube, std::int32_t n)
@@ -185,35 +233,6 @@ bool in_ball(const CubeGrid::Cell& cube, std::int32_t n)
         distance += (2 * i + 1 - n) * (2 * i + 1 - n);
     return 25 * distance <= 9 * n * n;
 }
-
-} // namespace
-
-Scene make_cubes(std::uint32_t resolution)
-{
-    if (resolution < 2 || resolution > 128)
-        throw Error(ErrorKind::usage,
-                    fmt::format("making scene cubes: {} cubes along an axis; 2 to 128 are accepted", resolution));
-    return CubeGrid(resolution).make("cubes", [n = static_cast<std::int32_t>(resolution)](const CubeGrid::Cell& cube) {
-        return in_ball(cube, n);
-    });
-}
-
-} // namespace tetrace
-
-// Solid cubes scattered through a grid of cubes.
-#include "core/base/control_groups.h"
-#include "core/base/error.h"
-#include "scenes/catalogue.h"
-#include "scenes/procedural.h"
-#include "scenes/procedural/cube_grid.h"
-
-#include <algorithm>
-#include <fmt/format.h>
-#include <string>
-
-namespace tetrace {
-
-namespace {
 
 /// Whether the cube is solid: 4 of 3 n are. A cube shows 1.5 times the area of its side to a line, on average over all
 /// directions, so a line goes through n / 2 cubes before it meets a solid one. None is solid at the domain's sides.
@@ -239,6 +258,16 @@ void require_memory(std::uint64_t n)
 }
 
 } // namespace
+
+Scene make_cubes(std::uint32_t resolution)
+{
+    if (resolution < 2 || resolution > 128)
+        throw Error(ErrorKind::usage,
+                    fmt::format("making scene cubes: {} cubes along an axis; 2 to 128 are accepted", resolution));
+    return CubeGrid(resolution).make("cubes", [n = static_cast<std::int32_t>(resolution)](const CubeGrid::Cell& cube) {
+        return in_ball(cube, n);
+    });
+}
 
 Scene make_lattice(std::uint32_t resolution)
 {

@@ -1,5 +1,5 @@
-// Only + - * / and square roots of doubles, and hashes of integers,
-// so each mesh has the same bits on every machine.
+// procedural/: generators of meshes and scenes, one file each. Here: what they share. Only + - * / and square roots of
+// doubles, and hashes of integers, so each mesh has the same bits on every machine.
 #pragma once
 
 #include "core/mesh/triangle_mesh.h"

@@ -20,7 +20,7 @@ protected:
     }
     Ended judge(const std::string& options = {})
     {
-        return run("judge --mesh cubes --rays rays.npy --hits hits.npy " + options);
+        return run("judge --mesh cubes --ray-file rays.npy --hits hits.npy " + options);
     }
     [[nodiscard]] std::vector<float> hits() const
     {
@@ -98,15 +98,15 @@ TEST_F(JudgeProgram, refuses_what_does_not_fit_with_exit_code_2)
         const char *arguments, *says;
         int code = 2;
     } cases[] = {
-        {"judge --mesh cubes --rays rays.npy", "--hits FILE.npy is missing"},
-        {"judge --mesh cubes --hits hits.npy", "--rays FILE.npy is missing"},
-        {"judge --rays rays.npy --hits hits.npy", "--mesh MESH is missing"},
-        {"judge --mesh cubes --rays", "--rays needs a value: FILE.npy"},
-        {"judge --mesh cubes --rays hits.npy --hits hits.npy", "N x 8"},
-        {"judge --mesh cubes --rays rays.npy --hits nine.npy", "nine.npy has 9 answers"},
-        {"judge --mesh bunny-1 --rays rays.npy --hits hits.npy", "cleaned and placed"},
-        {"judge --mesh cubes --rays rays.npy --hits hits.npy --slack 0", "--slack"},
-        {"judge --mesh cubes --rays rays.npy --hits none.npy", "none.npy", 3},
+        {"judge --mesh cubes --ray-file rays.npy", "--hits FILE.npy is missing"},
+        {"judge --mesh cubes --hits hits.npy", "--ray-file FILE.npy is missing"},
+        {"judge --ray-file rays.npy --hits hits.npy", "--mesh MESH is missing"},
+        {"judge --mesh cubes --ray-file", "--ray-file needs a value: FILE.npy"},
+        {"judge --mesh cubes --ray-file hits.npy --hits hits.npy", "N x 8"},
+        {"judge --mesh cubes --ray-file rays.npy --hits nine.npy", "nine.npy has 9 answers"},
+        {"judge --mesh bunny-1 --ray-file rays.npy --hits hits.npy", "cleaned and placed"},
+        {"judge --mesh cubes --ray-file rays.npy --hits hits.npy --slack 0", "--slack"},
+        {"judge --mesh cubes --ray-file rays.npy --hits none.npy", "none.npy", 3},
         {"rays --scene cubes", "--out FILE.npy is missing"},
         {"rays --scene cubes --out new.npy --answers ./new.npy", "it is the file of --out"},
         {"rays --scene cubes --out rays.txt", "does not end in .npy"},
@@ -140,10 +140,10 @@ TEST_F(JudgeProgram, takes_a_mesh_as_its_file_has_it)
     write_file(folder_ / "plain.obj", plain_mesh);
     write_npy(folder_ / "rays.npy", 8, std::vector<float>{4000.75f, 0.25f, 1, 0, 0, 0, -2, HUGE_VALF});
     write_npy(folder_ / "hits.npy", 4, std::vector<float>{1, 0.5f, 0.5f, 0.25f});
-    const Ended judged = run("judge --mesh plain.obj --rays rays.npy --hits hits.npy");
+    const Ended judged = run("judge --mesh plain.obj --ray-file rays.npy --hits hits.npy");
     EXPECT_EQ(judged.code, 0) << judged.out << judged.errors;
     EXPECT_EQ(run("rays --scene plain.obj --count 500 --out r.npy --answers a.npy").code, 0);
-    EXPECT_EQ(run("judge --mesh plain.obj --rays r.npy --hits a.npy").code, 0);
+    EXPECT_EQ(run("judge --mesh plain.obj --ray-file r.npy --hits a.npy").code, 0);
 }
 
 TEST_F(JudgeProgram, example_with_numpy_in_the_documentation_works)
@@ -159,7 +159,7 @@ TEST_F(JudgeProgram, example_with_numpy_in_the_documentation_works)
     ASSERT_EQ(run("rays --scene mesh.obj --rays random --count 500 --out rays.npy").code, 0);
     const Ended traced = run("trace.py", python);
     ASSERT_EQ(traced.code, 0) << traced.errors;
-    const Ended judged = run("judge --mesh mesh.obj --rays rays.npy --hits hits.npy");
+    const Ended judged = run("judge --mesh mesh.obj --ray-file rays.npy --hits hits.npy");
     EXPECT_EQ(judged.code, 0) << judged.out << judged.errors;
 }
 
@@ -175,7 +175,7 @@ TEST_F(JudgeProgram, script_of_how_wrong_ray_tracers_are_judges_them_on_a_corpus
                                       TETRACE_ROOT, TETRACE_PROGRAM),
                           python);
     ASSERT_EQ(ran.code, 0) << ran.out << ran.errors;
-    const Ended judged = run("judge --mesh corpus/boxes.obj --rays corpus/boxes-hard.npy "
+    const Ended judged = run("judge --mesh corpus/boxes.obj --ray-file corpus/boxes-hard.npy "
                              "--hits corpus/boxes-hard-answers.npy --out judged.json");
     EXPECT_EQ(judged.code, 0) << judged.out << judged.errors;
     EXPECT_EQ(result().at("rays"), 100);

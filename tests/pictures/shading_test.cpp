@@ -79,6 +79,17 @@ TEST(ShadeHits, refuses_hits_that_were_never_written)
     EXPECT_THROW((void)shade_hits(hits, small_view(), 2, 1, square()), Error);
 }
 
+TEST(LayersOfHits, have_the_hits_and_normals_towards_the_viewer)
+{
+    const std::vector<Hit> ahead{hit_of(0), hit_of(1)}, none{hit_of(LOST), {NO_HIT, NO_TET, 0, 0, 0, 7}};
+    const HitLayers both = layers_of_hits(ahead, small_view(), 2, 1, square());
+    EXPECT_EQ(both.pixels, (std::vector<HitPixel>{{1, 3, {0, 0, 1}, 0}, {1, 3, {0, 0, 1}, 1}}));
+    EXPECT_EQ(layers_of_hits(none, small_view(), 2, 1, square()).pixels,
+              (std::vector<HitPixel>{{1, 3, {}, LOST}, {0, 7, {}, NO_HIT}}));
+    const std::vector<Hit> unwritten{hit_of(0), hit_of(POISON)};
+    EXPECT_THROW((void)layers_of_hits(unwritten, small_view(), 2, 1, square()), Error);
+}
+
 TEST(ShadeHits, draws_triangles_without_area)
 {
     const TriangleMesh needle{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}};

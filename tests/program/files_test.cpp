@@ -50,6 +50,19 @@ TEST_F(Files, pictures_are_whole_or_not_written)
     if (run(render + "--out good.png").code == 3) GTEST_SKIP() << "without OpenImageIO there are only PPM files";
     expect_refusal(render + "--out a.exr", "a.exr");
     expect_refusal(render + "--picture steps --out a.png", "a.png");
+    expect_refusal(render + "--picture hits --out b.exr", "b.exr");
+}
+
+TEST_F(Files, hits_need_openimageio_and_say_so)
+{
+    std::filesystem::copy_file(TETRACE_PROGRAM, folder_ / "alone"); // the module is searched next to the program
+    for (const char* const out : {"", "--out a.exr", "--out ."}) {
+        const Ended ended = run(std::string("render --views 0 --picture normals,hits ") + tiny + out, "./alone");
+        EXPECT_EQ(ended.code, 3) << out << ended.errors;
+        EXPECT_TRUE(contains(ended.errors, "libopenimageio-dev")) << ended.errors;
+        EXPECT_TRUE(contains(ended.errors, "other than hits")) << ended.errors;
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "cubes-0-normals.ppm"));
 }
 
 TEST_F(Files, several_pictures_end_with_the_first_that_cannot_be_written)

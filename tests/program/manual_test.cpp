@@ -155,7 +155,7 @@ TEST_F(Manual, fish_reads_its_completion)
 {
     const std::string text = fish_completion();
     EXPECT_TRUE(contains(text, "__fish_seen_subcommand_from render' -l picture "));
-    EXPECT_TRUE(contains(text, "\"printf %s\\n normals steps crossings depth light tally\")'\n"));
+    EXPECT_TRUE(contains(text, "\"printf %s\\n normals steps hits crossings depth light tally\")'\n"));
     if (!is_installed("fish")) GTEST_SKIP() << "fish is not installed";
     write_file(folder_ / "tetrace.fish", text);
     EXPECT_EQ(output_of("fish -n " + (folder_ / "tetrace.fish").string()), "");

@@ -251,6 +251,13 @@ TEST_F(Meshes, whose_triangles_cross_are_traced_through_bvhs_as_they_are)
     EXPECT_EQ(run("render --scene pair.off --no-repair --size 32 --views 0 --structure bvh --out a.ppm").code, 0);
 }
 
+TEST_F(Meshes, of_the_smallest_plant_have_tets)
+{
+    const Ended ended = run("check --scene plant@4000 --effort 0 --size 32 --views 0 --layout half32 --backend openmp");
+    EXPECT_EQ(ended.code, 0) << ended.errors << "TetGen crashes with nearly all switches, in nearly all orders";
+    EXPECT_TRUE(contains(ended.out, "Conforms  1 row")) << ended.out;
+}
+
 // The limit of time ends the builder before it has tets.
 TEST_F(Meshes, whose_tets_cannot_be_built_are_traced_through_bvhs)
 {
@@ -286,7 +293,10 @@ TEST_F(Meshes, whose_tets_cannot_be_built_are_traced_through_bvhs)
     EXPECT_TRUE(contains(nlohmann::json::parse(file("a.json"))["tetrace"]["scenes"][0]["no_tets"].get<std::string>(),
                          "the limit of 0.01 s of processor time"));
     EXPECT_EQ(run("build --scene banana --time-limit 0.01").code, 2) << "nothing is built";
-    EXPECT_EQ(run("render --scene banana --time-limit 0.01 --size 32 --views 0 --structure bvh --out a.ppm").code, 0);
+    const std::string render = "render --scene banana --time-limit 0.01 --size 32 --views 0 --out a.ppm";
+    for (const std::string how : {"", " --structure bvh"})
+        EXPECT_EQ(run(render + how).code, 0) << how;
+    EXPECT_EQ(run(render + " --layout half32").code, 3) << "tets are asked for";
 }
 
 TEST_F(Meshes, of_tets_conform_in_each_task_and_are_written_again)

@@ -357,8 +357,8 @@ TEST(Options, each_name_has_one_meaning_and_a_former_name_is_answered_with_the_n
 {
     EXPECT_EQ(parse_options({"check", "--differences", "folder"}).picture_folder, "folder");
     EXPECT_EQ(parse_options({"check", "--junit", "check.xml"}).junit, "check.xml");
-    EXPECT_TRUE(
-        contains(rejection({"render", "--picture", "folder"}), "normals, steps, crossings, depth, light or tally"));
+    EXPECT_TRUE(contains(rejection({"render", "--picture", "folder"}),
+                         "normals, steps, hits, crossings, depth, light or tally"));
     EXPECT_TRUE(contains(rejection({"check", "--picture", "folder"}), "--picture of check is now --differences"));
     EXPECT_TRUE(contains(rejection({"report", "--picture=a.png", "a.json"}), "--picture of report is now --image"));
     EXPECT_TRUE(contains(rejection({"inspect", "--require", "sm_90"}), "--require of inspect is now --require-target"));

@@ -83,7 +83,7 @@ def judged_answers(folder):
                    stdout=subprocess.DEVNULL)
     bytes_ = hits.read_bytes()
     hits.write_bytes(bytes_[:-27 * 16] + b"".join([b"\0\0\x80\xbf" + bytes(12)] * 27))
-    return fresh(["judge", "--mesh", "cubes", "--rays", str(rays), "--hits", str(hits)], (1,))
+    return fresh(["judge", "--mesh", "cubes", "--ray-file", str(rays), "--hits", str(hits)], (1,))
 
 
 def reproduced(bench):

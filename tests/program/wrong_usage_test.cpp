@@ -37,6 +37,7 @@ constexpr Wrong wrong_usages[] = {
     {"scenes --clean", 2, "scenes: '--clean' is not an option; did you mean --clear?\n"},
     {"trace --views 2", 2, "trace: '--views' is not an option; did you mean --view?\n"},
     {"inspect --require sm_90", 2, "inspect: --require of inspect is now --require-target\n"},
+    {"judge --mesh cubes --rays r.npy --hits h.npy", 2, "judge: --rays of judge is now --ray-file\n"},
     {"report --picture a.png a.json", 2, "report: --picture of report is now --image\n"},
     // names of values
     {"bench --backend openmp --scene buny", 2, "scene buny: neither a name of the catalogue (cubes, banana, bunny, "},
@@ -59,8 +60,8 @@ constexpr Wrong wrong_usages[] = {
     {"bench --tile 4x8", 2, "--tile: '4x8' is not accepted; did you mean 8x8? Accepted: 8x4 or 8x8"},
     {"bench --packet-lanes 5", 2, "--packet-lanes: '5' is not accepted; accepted: 4, 8 or 16"},
     {"render --picture step", 2,
-     "--picture: 'step' is not accepted; did you mean steps? Accepted: normals, steps, crossings, depth, light or "
-     "tally"},
+     "--picture: 'step' is not accepted; did you mean steps? Accepted: normals, steps, hits, crossings, depth, "
+     "light or tally"},
     {"reproduce table7", 2, "reproduce: 'table7' is not accepted; accepted: table3, table4, "},
     {"reproduce --builds theirs", 2, "--builds: 'theirs' is not accepted; accepted: ours, paper or rays"},
     // numbers
@@ -92,6 +93,8 @@ constexpr Wrong wrong_usages[] = {
     {"bench --backend openmp --resume", 2,
      "--resume: the journal is in the result's folder; name the result's file with "},
     {"bench --no-repair --repair", 2, "--no-repair: --repair is given, too; leave one of them out"},
+    {"render --scene cubes --picture hits --out a.png", 2, "--out 'a.png': --picture hits is written as .exr only; "},
+    {"render --scene cubes --picture hits --tets cdt,rays", 2, "--picture hits: a file has the hits of one kind of "},
     {"bench --tets cdt,rays", 2, "--tets accepts one value for 'bench'; lists are for 'tetrace build'"},
     {"bench --backend openmp --filter '('", 2, "--filter: '(' is not a regular expression (RE2 syntax): "},
     {"bench --columns mrays", 2, "--columns: no table has the column 'mrays'; accepted: row, "},

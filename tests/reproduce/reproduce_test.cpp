@@ -266,6 +266,33 @@ TEST_F(Reproduce, table5_has_every_search_of_every_method_without_a_scene)
     EXPECT_EQ(lines("r.json.journal"), 1u + 20 + 1 + 1) << "head, batches, yardstick, end";
 }
 
+TEST_F(Reproduce, table5_measures_the_rows_that_fit_the_budget_and_names_the_others)
+{
+    const auto rows = [&](const std::string& more) {
+        const Ended ended = run("table5 --searches 20x64 --samples 3 --out r.json --budget " + more);
+        EXPECT_EQ(ended.code, 0) << ended.errors;
+        return result("r.json")["searches"]["rows"];
+    };
+    const auto measured = [](const json& of) {
+        return std::ranges::count_if(of, [](const json& row) { return row["status"] == "ok"; });
+    };
+    const json few = rows("0.0001");
+    EXPECT_EQ(few.size(), 12u);
+    EXPECT_EQ(measured(few), 1) << "however small the budget";
+    for (const json& row : few) {
+        if (row["status"] == "ok") {
+            EXPECT_EQ(row["verification"]["searches"], 20 * 64) << "all of them";
+            continue;
+        }
+        EXPECT_EQ(row["status"], "skipped");
+        EXPECT_TRUE(contains(row["reason"].get<std::string>(), "--budget")) << row["reason"];
+    }
+    const json again = rows("0.0001 --resume");
+    for (std::size_t i = 0; i < few.size(); ++i)
+        EXPECT_EQ(again.at(i)["status"], few.at(i)["status"]) << "nothing is measured that was skipped";
+    EXPECT_EQ(measured(rows("1h")), 12);
+}
+
 TEST_F(Reproduce, table5_records_what_it_was_made_from)
 {
     const Ended ended = run("table5 --searches 40x64 --method maria --layout tet80 --samples 3 --out r.json");

@@ -218,6 +218,15 @@ TEST_F(Gltf, looks_at_version_and_required_extensions_first)
     EXPECT_TRUE(contains(refusal(changed(R"("version":"2.0")", R"("version":"1.0")")),
                          "it is glTF 1.0, which is not read; convert it to glTF 2.0"));
     EXPECT_TRUE(contains(refusal(R"({"asset":{"version":"1.1"},"meshes":{"a":{}}})", "a.gltf"), "it is glTF 1.1"));
+    const auto at_least = [&](const std::string& version) {
+        return changed(R"("version":"2.0")", R"("version":"2.0","minVersion":)" + version);
+    };
+    for (const std::string version : {"2.1", "2.10", "3.0", "10.0"})
+        EXPECT_TRUE(contains(refusal(at_least('"' + version + '"')),
+                             "it requires glTF " + version + " (asset.minVersion), which is not read; export it as"));
+    EXPECT_TRUE(contains(refusal(at_least("[2]")), "it requires glTF [2]"));
+    for (const std::string version : {"\"2.0\"", "\"1.0\"", "null"})
+        EXPECT_EQ(read_gltf(at_least(version)).mesh, read_gltf(plain_).mesh);
     std::string first = plain_;
     first[4] = 1;
     EXPECT_TRUE(contains(refusal(first), "it is glTF 1.0"));

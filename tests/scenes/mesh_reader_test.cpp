@@ -37,6 +37,11 @@ TEST(MeshReader, skips_a_byte_order_mark)
     std::string stl = binary_stl();
     stl.replace(0, mark.size(), mark); // a binary header may hold anything, and keeps its place
     EXPECT_EQ(read("a.stl", stl), read("b.stl", binary_stl()));
+    stl.replace(mark.size(), 5, "solid");
+    EXPECT_EQ(read("a.stl", stl), read("b.stl", binary_stl()));
+    stl.replace(0, 12, std::string("\xFF\xFEsolid\0\0\0\0\0", 12)); // not UTF-16, which is refused
+    EXPECT_EQ(read("a.stl", stl), read("b.stl", binary_stl()));
+    EXPECT_EQ(read("a.stl", mark + ascii_stl), read("b.stl", ascii_stl));
     expect_error("c.off", mark, {"header", "the file is empty"});
 }
 
@@ -122,15 +127,21 @@ TEST(MeshReader, reads_every_kind_of_line_end)
 
 TEST(MeshReader, tells_the_format_of_a_name_without_extension_by_its_content)
 {
-    const std::string obj = "# by hand\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    const std::string obj = "# by hand\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", keyless = tetrahedron_off.substr(4),
+                      two_counts = "4 4" + keyless.substr(keyless.find('\n'));
     for (const auto& [name, bytes] : std::vector<std::pair<std::string, std::string>>{{"a.obj", obj},
                                                                                       {"a.off", tetrahedron_off},
                                                                                       {"b.off", "C" + tetrahedron_off},
+                                                                                      {"c.off", keyless},
+                                                                                      {"d.off", "\n# 1\n" + keyless},
+                                                                                      {"e.off", two_counts},
                                                                                       {"a.stl", ascii_stl},
                                                                                       {"b.stl", binary_stl()},
                                                                                       {"a.ply", stanford_ply("ascii")}})
         EXPECT_EQ(read("stdin", bytes), read(name, bytes)) << name;
     expect_error("stdin", "text\n1 2\n", {"'text' is not a keyword of OBJ"});
+    for (const std::string line : {"4", "4 4 6 1", "4 4 6.5"})
+        expect_error("stdin", line + keyless.substr(keyless.find('\n')), {"'4' is not a keyword of OBJ"});
 }
 
 TEST(MeshReader, notes_bytes_after_the_end)
@@ -146,7 +157,15 @@ TEST(MeshReader, notes_bytes_after_the_end)
     const MeshSoup soup = parse_mesh("a.stl", binary_stl() + "by hand");
     EXPECT_EQ(soup.mesh, read("b.stl", binary_stl()));
     EXPECT_EQ(soup.notes, std::vector<std::string>{"7 bytes after the last facet were ignored"});
-    EXPECT_EQ(read("a.stl", ascii_stl + "\n\n"), read("b.stl", ascii_stl));
+    EXPECT_EQ(parse_mesh("a.stl", ascii_stl + "\n\n").notes, std::vector<std::string>{});
+    for (const std::string more : {"by hand\n", "\x1a", "solid b\nendsolid b\nby hand\nsolid"}) {
+        const MeshSoup ascii = parse_mesh("a.stl", ascii_stl + more);
+        EXPECT_EQ(ascii.mesh, read("b.stl", ascii_stl)) << more;
+        EXPECT_EQ(ascii.notes, std::vector<std::string>{"text after the last endsolid was ignored"}) << more;
+    }
+    const MeshSoup twice = parse_mesh("a.stl", ascii_stl + ascii_stl);
+    EXPECT_EQ(twice.mesh.triangles.size(), 4u);
+    EXPECT_TRUE(twice.notes.empty());
 }
 
 TEST(MeshReader, reads_ascii_stl_as_programs_write_it)

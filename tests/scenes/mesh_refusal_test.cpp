@@ -48,6 +48,15 @@ TEST(MeshRefusal, names_empty_files_and_unknown_formats)
     for (const std::string mark : {"\xFF\xFE", "\xFE\xFF"})
         for (const std::string name : {"a.obj", "a.off", "a.ply", "stdin"})
             expect_error(name, mark + std::string("v\0 \0", 4), {"UTF-16", "iconv -f UTF-16 -t UTF-8"});
+    std::string little = "\xFF\xFE", big = "\xFE\xFF";
+    for (const char c : ascii_stl)
+        little += {c, '\0'}, big += {'\0', c};
+    for (const std::string& text : {little, big})
+        for (const std::string name : {"a.stl", "stdin"})
+            expect_error(name, text, {"UTF-16", "iconv -f UTF-16 -t UTF-8"});
+    for (const std::string name : {"a.obj", "a.ply", "a.stl", "a.ply.gz", "a.glb", "a.vtu", "stdin"})
+        expect_error(name, "\x1F\x8B\x08" + std::string(20, '\0'),
+                     {"file: it is compressed by gzip", "zcat FILE | tetrace build --scene /dev/stdin"});
     expect_error("a.off", "OFF BINARY\n", {"binary OFF", "convert"});
 }
 
@@ -77,9 +86,28 @@ TEST(MeshRefusal, names_the_vertex_that_is_no_finite_float)
     expect_error("a.off", "OFF\n3 1 0\n0 0 0\n0 zero 0\n", {"vertex 1 (line 4)", "'zero' is not a number"});
     expect_error("a.obj", "v 0,5 0 0\n", {"vertex 1 (line 1)", "'0,5' has a comma", "decimal point"});
     expect_error("a.off", "OFF\n3 1 0\n0, 0, 0\n", {"vertex 0 (line 3)", "'0,' has a comma"});
+    expect_error("a.obj", "v 0 0\n", {"vertex 1 (line 1)", "fewer than three coordinates"});
+    expect_error("a.obj", "v 1,2,3\n", {"vertex 1 (line 1)", "'1,2,3' has a comma", "nothing between them but blanks"});
+    expect_error("a.off", "OFF\n3 1 0\n-1.5,2,3e4,\n", {"vertex 0 (line 3)", "'-1.5,2,3e4,' has a comma"});
+    for (const std::string word : {",", "1,two", "1;2"})
+        expect_error("a.obj", "v " + word + " 0 0\n", {"'" + word + "' is not a number"});
     std::string ply = stanford_ply("ascii");
     ply.replace(ply.find("0.25"), 4, "0,25");
     expect_error("a.ply", ply, {"vertex 3", "'0,25' has a comma"});
+}
+
+TEST(MeshRefusal, names_the_type_of_ply_that_is_not_read)
+{
+    const std::string whole = stanford_ply("ascii");
+    for (const auto& [from, type] : std::vector<std::pair<std::string, std::string>>{
+             {"float x", "float16 x"}, {"uchar int", "uchar int64"}, {"uchar int", "uint64 int"}}) {
+        std::string ply = whole;
+        ply.replace(ply.find(from), from.size(), type);
+        const std::string error = refusal_of("a.ply", ply);
+        EXPECT_TRUE(contains(error, "header (line "));
+        EXPECT_TRUE(contains(error, "' is not read; export the mesh again, with integers as int"));
+        EXPECT_FALSE(contains(error, "damaged")) << error;
+    }
 }
 
 TEST(MeshRefusal, names_the_face_with_an_index_out_of_range)
@@ -138,6 +166,9 @@ TEST(MeshRefusal, refuses_files_cut_short_and_files_too_long)
     expect_error("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2", {"lacks triangles"});
     expect_error("a.stl", ascii_stl.substr(0, ascii_stl.size() - 40), {"facet 1"});
     expect_error("a.stl", ascii_stl.substr(0, ascii_stl.size() - 17), {"endsolid"});
+    expect_error("a.stl", ascii_stl + "more\n" + ascii_stl, {"facet 2 (line 17)", "'more' where 'solid' should come"});
+    expect_error("a.stl", ascii_stl + ascii_stl.substr(ascii_stl.find("facet")), {"'facet' where 'solid' should come"});
+    expect_error("a.stl", "solid a\nendsolid a\nmore\n", {"'more' where 'solid' should come"});
     expect_error("b.stl", binary_stl().substr(0, 150), {"the file has 150"});
     expect_error("b.stl", binary_stl(1), {"announces 1 facets", "enough for 2"});
     expect_error("b.stl", binary_stl(0), {"announces 0 facets", "enough for 2"});

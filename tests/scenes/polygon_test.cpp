@@ -156,10 +156,20 @@ TEST(Polygon, that_crosses_itself_or_has_no_area_is_reported)
     const CutPolygon bow = cut_polygon(Points{{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 1, 0}});
     EXPECT_FALSE(bow.is_simple);
     EXPECT_EQ(bow.triangles.size(), 2u);
-    EXPECT_EQ(cut_polygon(Points{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}).triangles.size(), 2u);
-    const MeshSoup soup = parse_mesh("a.obj", "v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 1 0\nf 1 2 3 4\n");
-    ASSERT_EQ(soup.notes.size(), 1u);
-    EXPECT_TRUE(contains(soup.notes[0], "1 polygons cross or overlap themselves"));
+    const CutPolygon line = cut_polygon(Points{{0, 0, 0}, {0, 0, 0}, {1, 0, 1}, {2, 0, 2}, {-1, 0, -1}});
+    EXPECT_TRUE(line.is_simple);
+    EXPECT_EQ(line.triangles.size(), 3u);
+    // Both halves of the second are as large, and go round the opposite way.
+    for (const std::string last : {"0 1 0", "0 2 0"}) {
+        const MeshSoup soup = parse_mesh("a.obj", "v 0 0 0\nv 2 2 0\nv 2 0 0\nv " + last + "\nf 1 2 3 4\n");
+        EXPECT_EQ(soup.mesh.triangles.size(), 2u);
+        ASSERT_EQ(soup.notes.size(), 1u);
+        EXPECT_TRUE(contains(soup.notes[0], "1 polygons cross or overlap themselves"));
+    }
+    for (const Points& none :
+         {Points{{0, 0, 0}, {0, 2, 2}, {0, 2, 0}, {0, 0, 2}}, Points{{0, 0, 0}, {2, 2, 4}, {2, 0, 2}, {0, 2, 2}},
+          Points{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 0, 0}}})
+        EXPECT_FALSE(cut_polygon(none).is_simple);
 }
 
 TEST(Polygon, of_ply_is_cut_when_all_vertices_are_known)
