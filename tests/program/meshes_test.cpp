@@ -255,7 +255,7 @@ TEST_F(Meshes, of_the_smallest_plant_have_tets)
 {
     const Ended ended = run("check --scene plant@4000 --effort 0 --size 32 --views 0 --layout half32 --backend openmp");
     EXPECT_EQ(ended.code, 0) << ended.errors << "TetGen crashes with nearly all switches, in nearly all orders";
-    EXPECT_TRUE(contains(ended.out, "Conforms  1 row")) << ended.out;
+    EXPECT_TRUE(contains(ended.out, "Conforms")) << ended.out;
 }
 
 // The limit of time ends the builder before it has tets.

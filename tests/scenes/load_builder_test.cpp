@@ -215,7 +215,7 @@ TEST_F(Load, says_each_time_where_the_tets_are_still_tetgens)
               std::vector<std::string>{"TetGen's tets are used: the optimiser found nothing to better"});
     const LoadedScene cached = load();
     EXPECT_TRUE(cached.from_cache);
-    EXPECT_EQ(cached.messages.front(), "thing: the tets are TetGen's: the optimiser found nothing to better");
+    EXPECT_EQ(cached.messages.front(), "the tets are TetGen's: the optimiser found nothing to better");
 }
 
 TEST_F(Load, gives_the_optimiser_half_of_the_builders_time_by_default)
