@@ -22,7 +22,7 @@
 // STACK_ENTRIES                              kernel.comp                stack.h, bvh2.h, bvh4.h, cwbvh.h
 // DEFERS_TIES                                kernel.comp                bvh.h, entry_on_path.h, structure_*.h, walk_*.h
 // SELECTS_MINIMA                             kernel.comp                dialect_glsl.h
-// PRECISE, MAYBE_UNUSED                      dialects                   wherever they stand
+// PRECISE, MAYBE_UNUSED                      dialects                   all parts
 // KEEP_BRANCH                                dialects: C++, OpenCL      bvh*.h, *_predicted.h, walk_by_records.h
 // KEEP_LOOP                                  dialects                   exact_order.h, wide_in_memory.h, dialect_cuda.h
 // HAS_FLOAT4                                 dialect_opencl.h           bvh4.h

@@ -228,7 +228,7 @@ std::vector<std::string> arguments_of(const fs::path& mesh, const fs::path& out,
 std::string text_of(const TetsAttempt& attempt)
 {
     std::string text = attempt.switches;
-    if (attempt.order >= 100) text += fmt::format(" with the domain's sides in {} squares", attempt.order / 100);
+    if (attempt.order >= 100) text += fmt::format(" with the domain's sides in {0} x {0} squares", attempt.order / 100);
     if (attempt.order % 100 > 0) text += fmt::format(" in order {}", attempt.order % 100);
     if (attempt.weld > 0) text += fmt::format(" welded at {:.2g}", attempt.weld);
     return text;

@@ -72,8 +72,9 @@ DumpedCase files_of_case(const LaunchCase& launch, const CaseOutput& output, con
     std::vector<std::string> others;
     for (const Backend* other : direct_backends())
         if (has_case_host(*other)) others.push_back(other->name());
-    throw Error(ErrorKind::usage, fmt::format("dump: {} has no host that runs a case without tetrace; with one: {}",
-                                              backend.name(), fmt::join(others, ", ")));
+    throw Error(ErrorKind::usage,
+                fmt::format("dump: {} has no host that runs a case without tetrace; backends that have one: {}",
+                            backend.name(), fmt::join(others, ", ")));
 }
 
 DumpedCase defect_case(const Backend& backend, std::string_view name)

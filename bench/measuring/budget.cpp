@@ -78,7 +78,10 @@ std::string budget_text(double seconds)
 
 } // namespace
 
-Budget::Budget(double seconds, Clock clock) : seconds_(seconds), clock_(std::move(clock)), start_s_(clock_()) {}
+Budget::Budget(double seconds, Clock clock, double shares)
+    : seconds_(seconds), shares_(shares), clock_(std::move(clock)), start_s_(clock_())
+{
+}
 
 void Budget::plan(std::vector<RowRun>& rows, unsigned samples, double sample_s, unsigned runs)
 {
@@ -156,7 +159,7 @@ void Budget::plan(std::vector<RowRun>& rows, const Entry& samples, const PartsOf
             row.outcome =
                 Skipped{Status::skipped, fmt::format("--budget of {} was spent before this row was estimated; "
                                                      "with more it is measured",
-                                                     seconds_text(seconds_))};
+                                                     seconds_text(shares_ * seconds_))};
             row.session.reset();
         }
         Parts parts;
@@ -226,7 +229,7 @@ void Budget::restored(const RowRun& row, std::size_t views)
     for (Entry& entry : entries_) {
         if (entry.row != &row) continue;
         entry.views_left = std::max(0.0, entry.views_left - static_cast<double>(views));
-        entry.views_to_judge = std::min(entry.views_to_judge, static_cast<double>(row.scene->views().size() - views));
+        entry.views_to_judge = std::min(entry.views_to_judge, entry.views - static_cast<double>(views));
     }
 }
 
@@ -352,7 +355,7 @@ void Budget::skip(Entry& entry)
 /// A budget that fits all rows, including the skipped ones: a quarter more than their expected time.
 std::string Budget::sufficient() const
 {
-    return budget_text(1.25 * (spent_s() + needed_s() + skipped_s_));
+    return budget_text(1.25 * shares_ * (spent_s() + needed_s() + skipped_s_));
 }
 
 double Budget::needed_s(bool by_references_only) const

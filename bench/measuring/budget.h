@@ -36,8 +36,10 @@ inline constexpr const char* with_budget = "; with --budget ";
 /// moment; if the last row with the judging of its scene takes longer, as long as these: one row is always measured.
 class Budget {
 public:
-    /// Starts the clock. seconds: infinity means no limit; then all functions below do nothing.
-    explicit Budget(double seconds = std::numeric_limits<double>::infinity(), Clock clock = host_clock());
+    /// Starts the clock. seconds: infinity means no limit; then all functions below do nothing. shares: what the whole
+    /// run has is so many times as much, and messages name that.
+    explicit Budget(double seconds = std::numeric_limits<double>::infinity(), Clock clock = host_clock(),
+                    double shares = 1);
 
     [[nodiscard]] const Clock& clock() const { return clock_; }
     [[nodiscard]] bool is_limited() const { return seconds_ < std::numeric_limits<double>::infinity(); }
@@ -117,7 +119,7 @@ private:
     void fit(double affordable_s);
     [[nodiscard]] std::string sufficient() const;
 
-    double seconds_;
+    double seconds_, shares_;
     Clock clock_;
     double start_s_;
     std::vector<Entry> entries_;

@@ -111,7 +111,7 @@ const VerbHelp verb_help[] = {
      "several "
      "kinds of tets. "
      "The pictures are made by the first selected row of each scene.\n\n"
-     "The file of --out ends in .png, .exr or .ppm; that of hits in .exr. With several pictures, scene, view and kind "
+     "The file of --out ends in .png, .exr or .ppm, of hits only in .exr. With several pictures, scene, view and kind "
      "are inserted before the extension. If it is a folder, the pictures in it are named SCENE-VIEW-KIND.png, or .ppm "
      "if OpenImageIO is missing (PPM needs no library); hits are SCENE-VIEW-hits.exr.",
      "  tetrace render --scene bunny --views 0 --out bunny.png\n"

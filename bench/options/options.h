@@ -51,7 +51,7 @@ enum class Format { table, json, csv, markdown };
 template <>
 inline constexpr auto enum_names<Format> = names_up_to<Format::markdown>("table", "json", "csv", "markdown");
 
-/// A picture that `render` writes: of hits, or these themselves; or, from crossings on, of all tets of each ray; or of
+/// A picture that `render` writes: of hits; the hits as data; or, from crossings on, of all tets of each ray; or of
 /// the sums of the tets.
 enum class Picture { normals, steps, hits, crossings, depth, light, tally };
 template <>

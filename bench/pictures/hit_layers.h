@@ -8,12 +8,12 @@
 
 namespace tetrace {
 
-/// A ray's hit as a picture file has it. t, steps and face are those of Hit, with NO_HIT and LOST.
+/// A ray's hit as a picture file has it. t and steps are those of Hit.
 struct HitPixel {
     float t;
     std::uint32_t steps;
-    Float3 normal; ///< of the input triangle, turned towards the viewer, of unit length; 0 without a hit
-    std::uint32_t face;
+    Float3 normal;      ///< of the input triangle, turned towards the viewer, of unit length; 0 without a hit
+    std::uint32_t face; ///< a triangle, NO_HIT or LOST
 
     friend bool operator==(const HitPixel&, const HitPixel&) = default;
 };

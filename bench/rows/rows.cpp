@@ -305,7 +305,7 @@ void require_in_flight(const Options& options, const std::vector<RowKey>& rows)
     throw Error(ErrorKind::usage,
                 fmt::format("--launches-in-flight {}: no selected row can have several; devices of kind cpu "
                             "begin a launch when the one before it has ended, and the sums of --task tally are "
-                            "those of one launch; select a device of another kind, and another task",
+                            "those of one launch; select a device of another kind, or another task",
                             options.launches_in_flight));
 }
 

@@ -97,16 +97,18 @@ void refuse_steps_without_tets(const RowRun& row, const std::vector<Picture>& pi
 {
     for (const Picture picture : pictures)
         if (picture == Picture::steps && row.key.kernel.structure != Structure::cdt)
-            throw Error(ErrorKind::usage,
+            throw row.scene->loaded().no_tets
+                ? Error(ErrorKind::missing, fmt::format("--picture steps: {} has no tets", row.scene->label()))
+                : Error(ErrorKind::usage,
                         fmt::format("--picture steps: {} counts no steps; use --structure cdt", row_name(row.key)));
 }
 
-/// Warns of lost rays, because a picture shows them only as a few pixels.
+/// Warns of lost rays, because a picture shows them only as a few magenta pixels, or as the number LOST.
 void tell_lost_rays(const RowRun& row, std::size_t view, std::span<const Hit> hits)
 {
     if (const std::uint64_t lost = count_rays(hits).lost; lost > 0)
-        say(fmt::format("{}, view {}: {} rays are lost; they are drawn in magenta, and have face {} in hits",
-                        row_name(row.key), row.scene->view_numbers()[view], lost, LOST));
+        say(fmt::format("{}, view {}: {} rays are lost (magenta; face {} in hits)", row_name(row.key),
+                        row.scene->view_numbers()[view], lost, LOST));
 }
 
 /// The task of the rows that cross tets for a picture; none for pictures of hits.
@@ -233,7 +235,11 @@ Pixmap draw(Picture picture, const std::vector<StepsImage>& images, const SceneW
 
 HitLayers layers_of(const StepsImage& image, const SceneWork& scene, std::size_t view)
 {
-    return layers_of_hits(image.hits, scene.views()[view], scene.width(), scene.height(), scene.loaded().scene.mesh);
+    const Scene& loaded = scene.loaded().scene;
+    HitLayers layers = layers_of_hits(image.hits, scene.views()[view], scene.width(), scene.height(), loaded.mesh);
+    for (HitPixel& pixel : layers.pixels)
+        pixel.face = source_triangle(loaded, pixel.face);
+    return layers;
 }
 
 void render_subject(Subject& subject, const Options& options, const PictureFiles& files, bool only_scene)

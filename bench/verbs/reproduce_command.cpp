@@ -12,6 +12,7 @@
 #include "bench/verbs/volume.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace tetrace {
@@ -104,12 +105,18 @@ struct Keeping {
     std::unique_ptr<ResultPictures> pictures;
 };
 
+/// A share of the run's budget.
+Budget share_of_budget(double share_s, const Options& options)
+{
+    return Budget(share_s, host_clock(), std::isinf(share_s) ? 1 : options.budget_s / share_s);
+}
+
 /// budget_s: of this scene.
 void run_scene(Reproduction& all, const SceneBuild& build, const Options& options, Keeping& keeping, double budget_s)
 {
     SceneRun& run = all.runs.emplace_back(open_scene_run(build, options));
     if (build.rivals) keeping.costs.restore(run.rows);
-    Budget budget(budget_s);
+    Budget budget = share_of_budget(budget_s, options);
     run_views(run, options, {keeping.journal.get(), &all.progress, &keeping.watch, &budget});
     if (keeping.pictures != nullptr)
         keeping.pictures->draw(run, build.robustness, wants(options, PaperTarget::figure6));
@@ -120,7 +127,7 @@ void run_scene(Reproduction& all, const SceneBuild& build, const Options& option
 void run_all_searches(Reproduction& all, const Options& options, Keeping& keeping, double budget_s)
 {
     SearchRun& run = all.searches.emplace(open_search_run(options));
-    Budget budget(budget_s);
+    Budget budget = share_of_budget(budget_s, options);
     run_searches(run, options, {keeping.journal.get(), &all.progress, &keeping.watch, &budget});
     for (RowRun& row : run.rows)
         row.session.reset();

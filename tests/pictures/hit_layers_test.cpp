@@ -4,6 +4,7 @@
 #include "bench/rows/row_tracing.h"
 #include "bench/rows/rows.h"
 #include "bench/verbs/commands.h"
+#include "scenes/build_scene.h"
 #include "tests/support/temporary_folder.h"
 
 #include <OpenImageIO/imageio.h>
@@ -11,6 +12,7 @@
 #include <cstring>
 #include <gtest/gtest.h>
 #include <limits>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -113,6 +115,24 @@ TEST_P(HitsPicture, has_each_hit_that_openmp_returns)
 }
 
 INSTANTIATE_TEST_SUITE_P(each, HitsPicture, testing::Values("half32", "bvh2"), [](const auto& i) { return i.param; });
+
+TEST(HitLayers, name_the_triangles_of_the_meshs_file)
+{
+    if (find_builder().empty()) GTEST_SKIP() << "the builder was not built";
+    const TemporaryFolder folder;
+    write_file(folder / "own.off",
+               "OFF\n4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 0 1\n3 0 1 2\n3 0 2 3\n"); // the first has no area
+    const std::string path = folder / "hits.exr";
+    const Options options = parse_options({"render", "--scene", folder / "own.off", "--effort", "0", "--size", "16",
+                                           "--views", "0", "--backend", "openmp", "--picture", "hits", "--out", path});
+    ASSERT_EQ(render_command(options), 0);
+    std::set<std::uint32_t> faces;
+    for (const HitPixel& pixel : read_hits(path))
+        faces.insert(pixel.face);
+    EXPECT_TRUE(faces.contains(1) || faces.contains(2));
+    for (const std::uint32_t none : {0u, 3u})
+        EXPECT_FALSE(faces.contains(none)) << none;
+}
 
 TEST(HitLayers, keep_their_bits_in_the_file)
 {

@@ -1,6 +1,8 @@
 #include "bench/measuring/budget.h"
 #include "bench/measuring/measure.h"
 #include "bench/measuring/view_recorder.h"
+#include "bench/reproduce/search_run.h"
+#include "core/rays/search_set.h"
 #include "tests/support/row_runs.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/wrapped_session.h"
@@ -152,6 +154,36 @@ TEST_F(BudgetOfRows, of_rows_that_are_only_verified_counts_no_samples)
     less.plan(rows_, 0);
     EXPECT_EQ(status_of(rows_[0]), Status::ok) << reason_of(rows_[0]);
     expect_skipped(1);
+}
+
+// Rows of exit searches have no scene. The budget is a third of the run's.
+TEST_F(BudgetOfRows, of_searches_skips_the_slowest_row_and_names_what_the_run_needs)
+{
+    SearchRun searches =
+        open_search_run(parse_options({"reproduce", "table5", "--searches", "4x64", "--backend", "openmp", "--method",
+                                       "maria,plane,plucker", "--layout", "tet80"}));
+    std::erase_if(searches.rows, [](const RowRun& row) { return row.key.threads != 1; });
+    ASSERT_EQ(searches.rows.size(), 3u);
+    const SearchRays rays = search_rays(0, searches.batch_tets, 64);
+    for (RowRun& row : searches.rows) {
+        const double batch_s = &row == &searches.rows[1] ? 100 : 1;
+        ray_s_.push_back(std::make_unique<double>(batch_s / static_cast<double>(rays.count())));
+        row.session = std::make_unique<BudgetedSession>(std::move(row.session), now_s_, *ray_s_.back(), 0);
+    }
+    Budget limit(
+        150, [this] { return now_s_; }, 3);
+    limit.plan_batches(searches.rows, 3, 0, 2,
+                       rays.quads); // of 2 batches: verified, warmed up, 3 samples and a pass: 11
+    for (const std::size_t fast : {0, 2})
+        EXPECT_EQ(status_of(searches.rows[fast]), Status::ok) << reason_of(searches.rows[fast]);
+    EXPECT_EQ(status_of(searches.rows[1]), Status::skipped);
+    const std::string reason = reason_of(searches.rows[1]);
+    EXPECT_NE(reason.find("would take about 18 min 20 s"), std::string::npos) << reason;
+    const auto at = reason.find(with_budget);
+    ASSERT_NE(at, std::string::npos) << reason;
+    const double minutes = std::stod(reason.substr(at + std::string(with_budget).size()));
+    EXPECT_GT(minutes * 60, 3 * 1122) << reason;
+    EXPECT_LT(minutes * 60, 3 * 1.25 * (1122 + 300) + 60) << reason;
 }
 
 TEST_F(BudgetOfRows, of_views_one_by_one_counts_those_that_are_left)
