@@ -132,12 +132,13 @@ TEST_F(Measure, an_interrupt_leaves_rows_with_five_samples_their_rate_and_others
         EXPECT_EQ(measured.samples, 30u) << "asked for";
         for (const RowRun& row : rows_) {
             EXPECT_EQ(status_of(row), Status::ok) << reason_of(row);
-            EXPECT_LT(row.samples_s.size(), 30u);
+            EXPECT_LE(row.samples_s.size(), 30u);
             EXPECT_TRUE(row.samples_s.empty() || row.samples_s.size() >= min_samples) << row.samples_s.size();
             EXPECT_EQ(row.samples_s.empty(), row.run_samples.empty());
         }
         const std::size_t taken = rows_[0].samples_s.size() + rows_[1].samples_s.size();
         EXPECT_EQ(taken == 0, pulses == 3) << taken;
+        EXPECT_LT(taken, static_cast<std::size_t>(pulses)) << "rows come in random order, so that one may have all 30";
     }
 }
 
