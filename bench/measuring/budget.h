@@ -36,8 +36,8 @@ inline constexpr const char* with_budget = "; with --budget ";
 /// moment; if the last row with the judging of its scene takes longer, as long as these: one row is always measured.
 class Budget {
 public:
-    /// Starts the clock. seconds: infinity means no limit; then all functions below do nothing. shares: what the whole
-    /// run has is so many times as much, and messages name that.
+    /// Starts the clock. seconds: infinity means no limit; then all functions below do nothing. shares: the whole run
+    /// has this many times as much, which is what messages name.
     explicit Budget(double seconds = std::numeric_limits<double>::infinity(), Clock clock = host_clock(),
                     double shares = 1);
 

@@ -130,7 +130,8 @@ void run_scene(Volume& volume, const VolumeScene& scene, const Clock& clock, dou
         const auto keys = rows_of_task(options);
         if (keys.empty()) continue;
         MachineWatch watch = watch_of(host_pulse(resolved_threads(options)), nullptr, clock);
-        Budget budget(budget_s / static_cast<double>(tasks.size()));
+        const auto shares = static_cast<double>(tasks.size());
+        Budget budget(budget_s / shares, host_clock(), shares);
         const Recording shared{nullptr, nullptr, &watch, &budget};
         SceneRows run = open_and_verify(
             keys, options, [&](const SeenImage& image) { lines.see(image); }, shared);
