@@ -1,19 +1,6 @@
 // A stressor of a faulty text, or that a compiler may change: CMakeLists.txt gives FAULT, its number; TEXT; and its
 // name as DEFECT or GROUP_DEFECT.
-#include "core/device/backend.h"
-#include "core/device/defects.h"
-#include "kernels/layouts/defect_words.h"
-
-#include <algorithm>
-#include <array>
-#include <atomic>
-#include <bit>
-#include <cassert>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <thread>
-#include <unordered_map>
+#include "tests/backends/faulty_stressor.h"
 
 namespace {
 #define DEFECT_WORDS const uint *words,

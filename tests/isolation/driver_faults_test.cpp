@@ -15,7 +15,12 @@ protected:
     void break_opencl() const { write_file(folder_ / "vendors/broken.icd", TETRACE_ABORTING_DRIVER "\n"); }
     [[nodiscard]] std::string vendors() const { return (folder_ / "vendors").string(); }
 
-    [[nodiscard]] bool has(const std::string& backends) { return run("devices --require " + backends).code <= 1; }
+    [[nodiscard]] bool has(const std::string& backend)
+    {
+        static std::map<std::string, bool> known;
+        if (!known.contains(backend)) known[backend] = run("devices --require " + backend).code <= 1;
+        return known[backend];
+    }
 
     /// The verb on openmp and OpenCL, whose drivers misbehave.
     Ended run_faulty(const std::string& fault, const std::string& arguments)
