@@ -219,8 +219,8 @@ void check_together(const Options& options)
 /// after the other. Rays of the last two are random and do not depend on cameras.
 constexpr std::string_view only_of_rivals[] = {"--runs"};
 constexpr std::string_view not_of_bench_runs[] = {"--builds", "--searches", "--shard", "--wait"};
-constexpr std::string_view not_of_ladder[] = {"--resume", "--camera-set", "--views"};
-constexpr std::string_view not_of_volume[] = {"--resume", "--camera-set"};
+constexpr std::string_view not_of_ladder[] = {"--camera-set", "--views"};
+constexpr std::string_view not_of_volume[] = {"--camera-set"};
 
 void check_bench_runs(const Options& options, const CLI::App& app)
 {
@@ -240,9 +240,9 @@ void check_bench_runs(const Options& options, const CLI::App& app)
     if (is_any)
         reject(not_of_bench_runs, fmt::format("is not for 'reproduce {}', which is one run of one process", name));
     if (is_any && *target == PaperTarget::ladder)
-        reject(not_of_ladder, "is not for 'reproduce ladder', which is short and traces random rays");
+        reject(not_of_ladder, "is not for 'reproduce ladder', which traces random rays");
     if (is_any && *target == PaperTarget::volume)
-        reject(not_of_volume, "is not for 'reproduce volume', which is short and crosses tets on random rays");
+        reject(not_of_volume, "is not for 'reproduce volume', which crosses tets on random rays");
 }
 
 /// A verb's defaults.

@@ -33,7 +33,8 @@ std::vector<OptionRow> expectation_options()
          bit(Verb::check), false, set_path("--write-expect", &Options::write_expected)},
         {"Expectations", "--repeat", "N",
          "Check all rows N times, 1 to 1000. A row that differs between repetitions fails, with its rate ('wrong in 2 "
-         "of 10'), unless --expect lists it among the flakes. Default: 1.",
+         "of 10'), unless --expect lists it among the flakes. With --out, --resume goes on after the last one that was "
+         "finished. Default: 1.",
          bit(Verb::check), false, set_count("--repeat", &Options::repeat, 1, 1000)},
     };
 }
@@ -85,8 +86,8 @@ std::vector<OptionRow> output_options()
          false, set(&Options::anonymous),
          usual_for(~(building | bit(Verb::inspect)), "no host name and no folders in the result")},
         {"Output", "--resume", "",
-         "Continue the run whose journal is FILE.journal, for FILE of --out: views, samples and batches of searches in "
-         "it are not repeated. If the journal does not exist, start one.",
+         "Continue the run whose journal is FILE.journal, for FILE of --out: views, samples, batches of searches and "
+         "repetitions in it are not done again. If the journal does not exist, start one.",
          sharing, false, set(&Options::resume)},
         {"Output", "--junit", "FILE",
          "Also write the result to FILE as JUnit XML, one test case per row, of 'judge' one per kind of fault; '-' "

@@ -196,16 +196,12 @@ Sheet closing_lines(const BenchResult& result)
 
 nlohmann::json bench_json(const BenchResult& result, nlohmann::json section)
 {
-    section["samples_a_row"] = result.measurement.samples * result.measurement.runs;
-    if (result.measurement.runs > 1) section["runs"] = result.measurement.runs;
-    section["samples_lowered"] = result.measurement.lowered;
+    set_measurement(section, result.measurement);
     if (result.measurement.lowered) {
         section["samples_asked"] = result.samples_asked;
         section["budget_s"] = result.budget_s;
     }
-    if (result.measurement.wall_s > 0) section["timed_s"] = result.measurement.wall_s;
     section["threads"] = result.threads;
-    set_steadiness(section, result.measurement.load, result.measurement.pulses);
     section["missing_scenes"] = result.missing_scenes;
     section["missing_devices"] = result.missing_devices;
     section["scenes"] = result.scenes;
@@ -225,6 +221,15 @@ nlohmann::json bench_json(const BenchResult& result, nlohmann::json section)
 }
 
 } // namespace
+
+void set_measurement(nlohmann::json& section, const Measurement& measurement)
+{
+    section["samples_a_row"] = measurement.samples * measurement.runs;
+    if (measurement.runs > 1) section["runs"] = measurement.runs;
+    section["samples_lowered"] = measurement.lowered;
+    if (measurement.wall_s > 0) section["timed_s"] = measurement.wall_s;
+    set_steadiness(section, measurement.load, measurement.pulses);
+}
 
 bool is_timed(const BenchResult& result)
 {

@@ -30,6 +30,9 @@ struct BenchResult {
     bool interrupted = false;
 };
 
+/// As results record it; read_measurement() reads it again.
+void set_measurement(nlohmann::json& section, const Measurement& measurement);
+
 /// Whether any row has a rate.
 [[nodiscard]] bool is_timed(const BenchResult& result);
 

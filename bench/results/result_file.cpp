@@ -234,9 +234,14 @@ DeviceKind device_kind_of(const ResultValue& device)
 
 ResultFile read_result(const std::filesystem::path& path)
 {
+    return result_from(read_json(path, "result", {"benchmarks", "context"}), path);
+}
+
+ResultFile result_from(nlohmann::json json, const std::filesystem::path& path)
+{
     ResultFile result;
     result.path = path;
-    result.json = read_json(path, "result", {"benchmarks", "context"});
+    result.json = std::move(json);
     const auto section = ResultValue(result.json, path.string()).find("tetrace");
     if (!section)
         throw Error(ErrorKind::invalid_input,

@@ -106,5 +106,7 @@ struct ResultFile {
 /// read, exceeds 64 MiB, 6,000,000 values or 64 levels, is not JSON, not a result, of another schema version, lacks a
 /// key or has one of another type.
 [[nodiscard]] ResultFile read_result(const std::filesystem::path& path);
+/// The same of a result's JSON. path: of the file that errors name.
+[[nodiscard]] ResultFile result_from(nlohmann::json json, const std::filesystem::path& path);
 
 } // namespace tetrace

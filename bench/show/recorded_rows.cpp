@@ -3,6 +3,7 @@
 #include "bench/options/browser_api.h"
 #include "bench/output/device_json.h"
 #include "bench/output/row_fields.h"
+#include "bench/output/trust.h"
 
 #include <algorithm>
 #include <cmath>
@@ -148,6 +149,25 @@ std::vector<RowDevice> read_devices(const ResultFile& file, const std::vector<Ro
     for (const ResultValue& device : list->items())
         devices.push_back(row_device_from(device));
     return devices;
+}
+
+unsigned small_count(const ResultValue& value)
+{
+    constexpr unsigned most = 1'000'000;
+    return static_cast<unsigned>(std::min<std::uint64_t>(value.count(), most));
+}
+
+Measurement read_measurement(const ResultValue& section)
+{
+    Measurement measurement;
+    if (const auto runs = section.find("runs")) measurement.runs = std::max(1u, small_count(*runs));
+    measurement.samples = small_count(section.at("samples_a_row")) / measurement.runs;
+    measurement.lowered = section.at("samples_lowered").flag();
+    if (const auto timed = section.find("timed_s")) measurement.wall_s = timed->number();
+    const Steadiness steadiness = read_steadiness(section);
+    measurement.load = steadiness.load;
+    measurement.pulses = steadiness.pulses;
+    return measurement;
 }
 
 } // namespace tetrace

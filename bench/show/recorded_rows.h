@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bench/measuring/measure.h"
 #include "bench/measuring/row_devices.h"
 #include "bench/results/result_file.h"
 
@@ -15,5 +16,10 @@ namespace tetrace {
 /// The devices of a result, for these rows of it. Results of schema version 1 and those of `check` have none: then they
 /// are the rows' own.
 [[nodiscard]] std::vector<RowDevice> read_devices(const ResultFile& file, const std::vector<RowRecord>& rows);
+
+/// How a result of `bench` was measured. Throws Error{invalid_input} naming the key.
+[[nodiscard]] Measurement read_measurement(const ResultValue& section);
+/// A count, or 1,000,000 if it is larger.
+[[nodiscard]] unsigned small_count(const ResultValue& value);
 
 } // namespace tetrace

@@ -108,12 +108,6 @@ std::vector<nlohmann::json> scenes_of(const ResultValue& section)
     return scenes;
 }
 
-unsigned small_count(const ResultValue& value)
-{
-    constexpr unsigned most = 1'000'000;
-    return static_cast<unsigned>(std::min<std::uint64_t>(value.count(), most));
-}
-
 RunAgain bench_again(const ResultFile& file, bool brief)
 {
     const ResultValue section = file.section();
@@ -127,14 +121,8 @@ RunAgain bench_again(const ResultFile& file, bool brief)
     result.missing_devices = sentences_at(section, "missing_devices");
     result.interrupted = section.find("interrupted").has_value();
     result.threads = small_count(section.at("threads"));
-    if (const auto runs = section.find("runs")) result.measurement.runs = std::max(1u, small_count(*runs));
-    result.measurement.samples = small_count(section.at("samples_a_row")) / result.measurement.runs;
-    result.measurement.lowered = section.at("samples_lowered").flag();
-    const Steadiness steadiness = read_steadiness(section);
-    result.measurement.load = steadiness.load;
-    result.measurement.pulses = steadiness.pulses;
-    result.conditions = steadiness.conditions;
-    if (const auto timed = section.find("timed_s")) result.measurement.wall_s = timed->number();
+    result.measurement = read_measurement(section);
+    result.conditions = read_steadiness(section).conditions;
     if (const auto asked = section.find("samples_asked")) result.samples_asked = small_count(*asked);
     if (const auto budget = section.find("budget_s")) result.budget_s = budget->number();
     Sheet sheet = brief ? brief_sheet(result) : bench_sheet(result);

@@ -15,6 +15,7 @@
 #include "bench/terminal/interrupts.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
+#include "bench/verbs/kept_parts.h"
 #include "core/base/files.h"
 
 #include <algorithm>
@@ -107,9 +108,8 @@ Options with_default_layouts(Options options)
     return options;
 }
 
-/// The rows of one repetition.
-std::vector<RowRecord> verify_once(const std::vector<RowKey>& keys, const Options& options, Journal* journal,
-                                   Checked& checked)
+/// The rows of one repetition, into checked. journal: of its views; may be null.
+void verify_once(const std::vector<RowKey>& keys, const Options& options, Journal* journal, Checked& checked)
 {
     Budget budget(options.budget_s);
     SceneRows run = open_and_verify(keys, options,
@@ -121,20 +121,32 @@ std::vector<RowRecord> verify_once(const std::vector<RowKey>& keys, const Option
     for (RowRun& row : run.rows)
         note_walks(row);
     checked.scenes = scene_records(run, options);
-    return records_of(run.rows);
+    checked.rows = records_of(run.rows);
 }
 
-/// Does the check as often as --repeat says. An interrupted repetition counts only if it is the first.
+/// Does the check as often as --repeat says. An interrupted repetition counts only if it is the first. The journal has
+/// each view once, so of several repetitions it has each as a whole.
 void verify_all(const std::vector<RowKey>& keys, const Options& options, Journal* journal, Checked& checked)
 {
-    std::vector<std::vector<RowRecord>> repetitions = {verify_once(keys, options, journal, checked)};
-    while (repetitions.size() < options.repeat && !is_interrupted()) {
-        try {
-            auto rows = verify_once(keys, options, journal, checked);
-            if (!is_interrupted()) repetitions.push_back(std::move(rows));
-        } catch (const Error& error) {
-            if (error.kind() != ErrorKind::interrupted) throw; // else it had no answer yet
+    const bool repeats = options.repeat > 1;
+    KeptParts kept(repeats ? journal : nullptr, options);
+    std::vector<std::vector<RowRecord>> repetitions;
+    for (unsigned i = 1; i <= options.repeat && (i == 1 || !is_interrupted()); ++i) {
+        const std::string name = fmt::format("repetition {}", i);
+        if (auto part = kept.find(name)) {
+            repetitions.push_back(std::move(part->rows));
+            checked.scenes = std::move(part->scenes);
+            continue;
         }
+        try {
+            verify_once(keys, options, repeats ? nullptr : journal, checked);
+        } catch (const Error& error) {
+            if (repetitions.empty() || error.kind() != ErrorKind::interrupted) throw; // else it had no answer yet
+            break;
+        }
+        if (!repetitions.empty() && is_interrupted()) break;
+        if (!is_interrupted()) kept.keep(name, {checked.rows, checked.scenes, {}});
+        repetitions.push_back(std::move(checked.rows));
     }
     checked.rows = combined_rows(repetitions, options.allow_flawed);
     checked.judgement =
@@ -161,8 +173,9 @@ int check(const Options& options, Checked& checked)
     checked.missing = missing_devices(options);
     if (options.picture_folder) checked.pictures = std::make_unique<DifferencePictures>(*options.picture_folder);
     checked.arrays = make_array_folder(options);
-    // A journal has each view once.
-    const auto journal = options.repeat > 1 ? nullptr : open_journal(options, run_head(options, keys));
+    nlohmann::json head = run_head(options, keys);
+    head["repeats"] = options.repeat > 1; // then it keeps repetitions, not views
+    const auto journal = open_journal(options, head);
     if (journal != nullptr) say_how_to_go_on(options);
     verify_all(keys, options, journal.get(), checked);
     const auto written = write_expectations(checked, options);
@@ -260,8 +273,6 @@ void require_whole_rows(const Options& options)
     if (options.resume && options.picture_folder)
         reject("--resume: --differences would lack the pictures of views that were traced before; "
                "leave one of them out");
-    if (options.repeat > 1 && options.resume)
-        reject("--repeat: a journal has each view once, so repetitions cannot be resumed; leave out --resume");
     const bool has_no_rows = !has_rows(options);
     if (options.variants > 0 && (options.defects || options.stress))
         reject("--variants changes the kernels of rows, and --defects and --stress run others; leave one of them out");

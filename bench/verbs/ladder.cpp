@@ -84,11 +84,11 @@ std::vector<StepCosts> measure_lone_rays(std::vector<RowRun>& rows, const Budget
     return costs;
 }
 
-/// The host's calibration is the same work throughout; a GPU's is a scene's own.
+/// The host's calibration is the same work throughout; a GPU's is a scene's own. scene: empty if they name it already.
 void append(std::vector<Pulse>& to, std::vector<Pulse> more, const std::string& scene)
 {
     for (Pulse& pulse : more) {
-        if (pulse.of != "host") pulse.of += ", " + scene;
+        if (pulse.of != "host" && !scene.empty()) pulse.of += ", " + scene;
         const auto known = std::ranges::find(to, pulse.of, &Pulse::of);
         if (known == to.end())
             to.push_back(std::move(pulse));
@@ -99,14 +99,14 @@ void append(std::vector<Pulse>& to, std::vector<Pulse> more, const std::string& 
 
 } // namespace
 
-void append(BenchResult& to, std::vector<RowRecord> rows, const std::vector<nlohmann::json>& scenes,
-            Measurement measured, const std::string& scene)
+void append(BenchResult& to, KeptPart part, const std::string& scene)
 {
-    std::ranges::move(rows, std::back_inserter(to.rows));
-    for (const nlohmann::json& record : scenes)
+    std::ranges::move(part.rows, std::back_inserter(to.rows));
+    for (const nlohmann::json& record : part.scenes)
         if (std::ranges::none_of(to.scenes,
                                  [&](const nlohmann::json& known) { return known["name"] == record["name"]; }))
             to.scenes.push_back(record);
+    Measurement measured = std::move(part.measurement).value();
     measured.wall_s += to.measurement.wall_s;
     measured.lowered |= to.measurement.lowered;
     std::vector<Pulse> pulses = std::move(to.measurement.pulses);
@@ -117,9 +117,39 @@ void append(BenchResult& to, std::vector<RowRecord> rows, const std::vector<nloh
 
 namespace {
 
+/// A scene of the ladder, measured.
+struct Rung {
+    KeptPart part;
+    std::vector<StepCosts> costs; ///< of its rows
+    Preparation preparation;
+};
+
+/// What the journal keeps of it besides its part.
+nlohmann::json besides_of(const Rung& scene)
+{
+    nlohmann::json costs = nlohmann::json::array();
+    for (const StepCosts& one : scene.costs)
+        costs.push_back({{"steps", one.steps}, {"alone_s", one.alone_s}});
+    return {{"costs", std::move(costs)},
+            {"making_s", scene.preparation.making_s},
+            {"verifying_s", scene.preparation.verifying_s}};
+}
+
+std::optional<Rung> kept_rung(const KeptParts& kept, const std::string& name)
+{
+    Rung scene;
+    auto part = kept.find(name, [&](const nlohmann::json& besides) {
+        for (const nlohmann::json& one : besides.at("costs"))
+            scene.costs.push_back({one.at("steps"), one.at("alone_s")});
+        scene.preparation = {besides.at("making_s"), besides.at("verifying_s")};
+    });
+    if (!part) return std::nullopt;
+    scene.part = *std::move(part);
+    return scene;
+}
+
 /// budget_s: of this scene.
-Preparation run_scene(Ladder& ladder, const std::vector<RowKey>& rows, const Options& options, const Clock& clock,
-                      double budget_s)
+Rung run_scene(const std::vector<RowKey>& rows, const Options& options, const Clock& clock, double budget_s)
 {
     const Stopwatch stopwatch;
     MachineWatch watch = watch_of(host_pulse(resolved_threads(options)), nullptr, clock);
@@ -129,10 +159,8 @@ Preparation run_scene(Ladder& ladder, const std::vector<RowKey>& rows, const Opt
     SceneRows run = open_and_verify(rows, options, {}, shared);
     const Preparation preparation{stopwatch.seconds() - budget.spent_s(), budget.spent_s()};
     Measurement measured = measure_rows(run.rows, options, {}, shared);
-    std::ranges::move(measure_lone_rays(run.rows, whole), std::back_inserter(ladder.costs));
-    append(ladder.result, records_of(run.rows), scene_records(run, options), std::move(measured),
-           scene_label(options.scenes.front()));
-    return preparation;
+    std::vector<StepCosts> costs = measure_lone_rays(run.rows, whole);
+    return {{records_of(run.rows), scene_records(run, options), std::move(measured)}, std::move(costs), preparation};
 }
 
 std::vector<RowKey> rows_of_scene(const std::vector<RowKey>& rows, const std::string& scene)
@@ -156,7 +184,7 @@ Options ladder_options(Options options)
     return options;
 }
 
-Ladder run_ladder(const Options& options, const std::vector<RowKey>& rows)
+Ladder run_ladder(const Options& options, const std::vector<RowKey>& rows, KeptParts& kept)
 {
     Ladder ladder;
     const Clock clock = host_clock();
@@ -166,6 +194,16 @@ Ladder run_ladder(const Options& options, const std::vector<RowKey>& rows)
         of_scene.scenes = {options.scenes[i]};
         const auto of_rows = rows_of_scene(rows, options.scenes[i]);
         if (of_rows.empty()) continue; // --filter
+        const std::string label = scene_label(options.scenes[i]);
+        const auto add = [&](Rung scene) {
+            last = scene.preparation;
+            std::ranges::move(scene.costs, std::back_inserter(ladder.costs));
+            append(ladder.result, std::move(scene.part), label);
+        };
+        if (auto known = kept_rung(kept, label)) {
+            add(*std::move(known));
+            continue;
+        }
         const double left_s = options.budget_s - clock();
         const std::string reason =
             i == 0 ? std::string() : why_left_out(options.scenes[i], of_rows, last.next_s(), left_s);
@@ -174,7 +212,10 @@ Ladder run_ladder(const Options& options, const std::vector<RowKey>& rows)
             ladder.result.missing_scenes.push_back(reason);
             continue;
         }
-        last = run_scene(ladder, of_rows, of_scene, clock, left_s / static_cast<double>(options.scenes.size() - i));
+        Rung scene =
+            run_scene(of_rows, of_scene, kept.clock(), left_s / static_cast<double>(options.scenes.size() - i));
+        if (!is_interrupted()) kept.keep(label, scene.part, besides_of(scene));
+        add(std::move(scene));
     }
     complete(ladder.result, options);
     return ladder;

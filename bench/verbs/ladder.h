@@ -2,6 +2,7 @@
 
 #include "bench/measuring/lone_rays.h"
 #include "bench/output/bench_report.h"
+#include "bench/verbs/kept_parts.h"
 
 #include <vector>
 
@@ -17,14 +18,13 @@ struct Ladder {
 /// each; half32, tet64 and bvh2 in one form each.
 [[nodiscard]] Options ladder_options(Options options);
 
-/// Adds a scene's rows and what was measured of them to those of other scenes. scenes: as results record them; one that
-/// the result has already is left out. scene: for the names of pulses.
-void append(BenchResult& to, std::vector<RowRecord> rows, const std::vector<nlohmann::json>& scenes,
-            Measurement measured, const std::string& scene);
+/// Adds a timed part to those of other scenes. Of its scenes, one that the result has already is left out. scene: for
+/// the names of GPUs' pulses; empty if they have it.
+void append(BenchResult& to, KeptPart part, const std::string& scene);
 
-/// Measures scene after scene, in the order of the options: each is closed before the next is made. A scene that the
-/// machine's memory cannot hold, or for which the budget has no time, is left out; the
+/// Measures scene after scene, in the order of the options: each is closed before the next is made, and kept. A scene
+/// that the machine's memory cannot hold, or for which the budget has no time, is left out; the
 /// result says why. rows: of those options.
-[[nodiscard]] Ladder run_ladder(const Options& options, const std::vector<RowKey>& rows);
+[[nodiscard]] Ladder run_ladder(const Options& options, const std::vector<RowKey>& rows, KeptParts& kept);
 
 } // namespace tetrace

@@ -190,24 +190,42 @@ int reproduce_ladder(const Options& asked, JudgedRows& judged)
     const Options options = ladder_options(asked);
     const auto rows = select_rows(options, scene_labels(options));
     require_selected(rows, options);
-    const Ladder ladder = run_ladder(options, rows);
+    const auto journal = open_journal(options, run_head(options, rows));
+    if (journal != nullptr) say_how_to_go_on(options);
+    KeptParts kept(journal.get(), options);
+    const Ladder ladder = run_ladder(options, rows, kept);
     judged.set(ladder.result.rows);
     deliver_besides_junit(options, bench_run_report(ladder.result, {ladder_table(ladder.result.rows, ladder.costs)},
                                                     ladder_figures(ladder.result.rows, ladder.costs), options));
-    return ladder.result.interrupted ? end_interrupted() : judged.exit_code(options);
+    if (ladder.result.interrupted) return end_interrupted();
+    end_journal(journal.get(), options);
+    return judged.exit_code(options);
 }
 
 /// A run of `bench` for each scene and task that crosses tets.
-int reproduce_volume(const Options& options, JudgedRows& judged)
+int reproduce_volume(const Options& asked, JudgedRows& judged)
 {
-    check_output(options);
-    require_devices(options.required);
-    const Volume volume = run_volume(options);
+    check_output(asked);
+    require_devices(asked.required);
+    const Options options = volume_options(asked);
+    std::vector<std::string> missing;
+    const auto scenes = volume_scenes(options, missing);
+    for (const std::string& sentence : missing)
+        say(sentence);
+    const auto journal = open_journal(options, volume_head(options, scenes));
+    if (journal != nullptr) say_how_to_go_on(options);
+    KeptParts kept(journal.get(), options);
+    Volume volume = run_volume(options, scenes, kept);
+    auto& left_out = volume.result.missing_scenes;
+    left_out.insert(left_out.begin(), missing.begin(), missing.end());
+    complete(volume.result, options);
     judged.set(volume.result.rows);
-    deliver_besides_junit(
-        options, bench_run_report(volume.result, {volume_table(volume.result.rows), volume_lines_table(volume.lines)},
-                                  {}, options));
-    return volume.result.interrupted ? end_interrupted() : judged.exit_code(options);
+    deliver_besides_junit(asked, bench_run_report(volume.result,
+                                                  {volume_table(volume.result.rows), volume_lines_table(volume.lines)},
+                                                  {}, asked));
+    if (volume.result.interrupted) return end_interrupted();
+    end_journal(journal.get(), options);
+    return judged.exit_code(options);
 }
 
 int reproduce_paper(const Options& asked, JudgedRows& judged)

@@ -44,6 +44,40 @@ TEST_F(LadderRun, scenes_without_memory_or_time_are_left_out_with_the_reason)
     EXPECT_TRUE(contains(no_time[0].get<std::string>(), "lattice:5 is left out: making and verifying it takes about"));
 }
 
+TEST_F(LadderRun, goes_on_after_the_scenes_of_its_journal)
+{
+    const std::string ladder = "ladder --scene lattice:4,lattice:5 --size 16 --samples 5 --out r.json";
+    const Ended ended = end(start(ladder, 2, SIGINT)); // after the head and a scene
+    ASSERT_EQ(ended.code, 130) << ended.out << ended.errors;
+    EXPECT_TRUE(contains(ended.errors, "--resume")) << ended.errors;
+    const auto before = result("r.json");
+    EXPECT_TRUE(before.at("interrupted").get<bool>());
+    EXPECT_EQ(run(ladder).code, 2) << "a run that did not end is not replaced";
+    ASSERT_EQ(run(ladder + " --resume").code, 0);
+    const auto after = result("r.json");
+    const auto rows_of = [](const nlohmann::json& all, const std::string& scene) {
+        nlohmann::json rows;
+        for (const auto& row : all.at("rows"))
+            if (row.at("scene") == scene) rows.push_back(row);
+        return rows;
+    };
+    EXPECT_EQ(rows_of(after, "lattice:4").size(), 3u);
+    EXPECT_EQ(rows_of(after, "lattice:5").size(), 3u);
+    EXPECT_EQ(rows_of(before, "lattice:5"), nlohmann::json()) << "not begun";
+    const auto &cells = of_id(after.at("tables"), "ladder").at("rows"),
+               &earlier = of_id(before.at("tables"), "ladder").at("rows");
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(rows_of(after, "lattice:4")[i].at("times"), rows_of(before, "lattice:4")[i].at("times"));
+        EXPECT_EQ(cells.at(i), earlier.at(i)) << "with its rays alone";
+    }
+    const auto readings = after.at("pulses").at(0).at("readings");
+    EXPECT_TRUE(std::ranges::is_sorted(readings)) << readings;
+    EXPECT_EQ(run(ladder + " --resume").code, 0);
+    const auto again = result("r.json");
+    for (std::size_t i = 0; i < 6; ++i)
+        EXPECT_EQ(again.at("rows").at(i).at("times"), after.at("rows")[i].at("times")) << "from the journal alone";
+}
+
 TEST_F(LadderRun, wrong_command_lines_are_refused)
 {
     const auto refused = [&](const std::string& arguments, const std::string& text) {
@@ -52,7 +86,6 @@ TEST_F(LadderRun, wrong_command_lines_are_refused)
         EXPECT_NE(ended.errors.find(text), std::string::npos) << ended.errors;
     };
     refused("ladder,table6", "run it by itself");
-    refused("ladder --resume --out a.json", "--resume is not for 'reproduce ladder'");
     refused("ladder --views 0-3", "--views is not for 'reproduce ladder'");
     refused("ladder --shard 1/2 --out a.json", "--shard");
 }

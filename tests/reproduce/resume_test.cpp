@@ -316,3 +316,38 @@ TEST_F(Resume, a_journal_of_other_options_is_refused)
     EXPECT_TRUE(contains(other.errors, "rows:")) << "it says what differs";
     EXPECT_EQ(run("table4 --size 33 --method maria --layout tet80 --views 0-1281:20 --out r.json --resume").code, 2);
 }
+
+TEST_F(Resume, a_check_goes_on_after_its_finished_repetitions)
+{
+    verb_ = "check";
+    const std::string check = "--size 8 --views 0 --layout tet80 --method maria --repeat 4 --out r.json";
+    const auto shown = [&] { return result("r.json").at("rows").at(0).at("repeated"); };
+    const Ended ended = end(start(check, 3, SIGINT)); // after the head and two repetitions
+    ASSERT_EQ(ended.code, 130) << ended.out << ended.errors;
+    EXPECT_TRUE(contains(ended.errors, "--resume")) << ended.errors;
+    EXPECT_EQ(shown(), json({"reference", "reference"}));
+    const std::string journal = read_text(folder_ / "r.json.journal");
+    ASSERT_EQ(run(check + " --resume").code, 0);
+    EXPECT_EQ(shown(), json({"reference", "reference", "reference", "reference"}));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "r.json.journal"));
+
+    // What the journal has counts.
+    std::vector<json> entries = entries_of(journal);
+    json& first = entries.at(1).at("tetrace").at("rows").at(0);
+    first["hit_hash"] = first["views_hash"] = "0123456789abcdef";
+    write_file(folder_ / "r.json.journal", journal_of(entries));
+    EXPECT_EQ(run(check + " --resume").code, 1);
+    EXPECT_EQ(shown(), json({"reference", "other answers", "other answers", "other answers"}));
+
+    const auto refused = [&](const std::string& arguments, const std::string& text, const std::string& why) {
+        write_file(folder_ / "r.json.journal", text);
+        const Ended damaged = run(arguments + " --resume");
+        EXPECT_EQ(damaged.code, 2) << damaged.out;
+        EXPECT_TRUE(contains(damaged.errors, why)) << damaged.errors;
+    };
+    first.erase("status");
+    refused(check, journal_of(entries), "repetition 1 in the journal is damaged: ");
+    entries.at(1) = {{"batch", 0}};
+    refused(check, journal_of(entries), "that does not belong to this run");
+    refused("--size 8 --views 0 --layout tet80 --method maria --out r.json", journal, "repeats");
+}

@@ -41,9 +41,27 @@ TEST_F(VolumeRun, compares_bits_and_sums_counts_lost_rays_and_tests_uniform_line
     EXPECT_TRUE(contains(ended.out, "testable")) << ended.out;
 }
 
+TEST_F(VolumeRun, goes_on_after_the_scenes_of_its_journal)
+{
+    const std::string volume = "volume --scene cubes,lattice:4 --resolution 4 --size 48 --samples 3 --method project "
+                               "--layout tet64 --out r.json";
+    ASSERT_EQ(end(start(volume, 2, SIGINT)).code, 130);
+    const auto before = result("r.json");
+    ASSERT_EQ(run(volume + " --resume").code, 0);
+    const auto after = result("r.json");
+    EXPECT_GT(before.at("rows").size(), 2u);
+    EXPECT_EQ(after.at("rows").size(), 2 * before.at("rows").size());
+    for (std::size_t i = 0; i < before.at("rows").size(); ++i)
+        EXPECT_EQ(after.at("rows")[i].at("times"), before.at("rows")[i].at("times"));
+    const auto &lines = of_id(after.at("tables"), "volume-lines").at("rows"),
+               &earlier = of_id(before.at("tables"), "volume-lines").at("rows");
+    ASSERT_EQ(earlier.size(), 1u);
+    ASSERT_EQ(lines.size(), 2u);
+    EXPECT_EQ(lines[0], earlier[0]);
+}
+
 TEST_F(VolumeRun, wrong_command_lines_are_refused)
 {
-    for (const std::string bad : {"volume,ladder", "volume --resume --out a.json", "volume --camera-set orbit",
-                                  "volume --shard 1/2 --out a.json"})
+    for (const std::string bad : {"volume,ladder", "volume --camera-set orbit", "volume --shard 1/2 --out a.json"})
         EXPECT_EQ(run(bad).code, 2) << bad;
 }
