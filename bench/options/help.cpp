@@ -161,11 +161,10 @@ const VerbHelp verb_help[] = {
      "Views: those of the camera set 'flight'. --views selects a sample of them, and the numbers then have 95 % "
      "intervals. Default scenes: banana, bunny and armadillo, if available.\n\n"
      "Output: with --out FILE, each finished view or batch of searches, of ladder and volume each scene, is also kept "
-     "in "
-     "FILE.journal, so that --resume can continue a run that was stopped; pictures are written next to FILE. CSV has a "
-     "row for each number, text, "
-     "verdict and point of a figure; Markdown leaves out the points. Exits with 1 if a row differs from openmp's, and "
-     "with 3 if no row could run here.",
+     "in FILE.journal, so that --resume can continue a run that was stopped; pictures are written next to FILE. CSV "
+     "has a row for each number, text, verdict and point of a figure; Markdown leaves out the points. Exits with 1 if "
+     "a "
+     "row differs from openmp's, and with 3 if no row could run here.",
      "  tetrace reproduce table4 --scene bunny --views 0-1281:20 --out table4.json\n"
      "  tetrace reproduce table6 --scene bunny --views 0-1281:20 --backend openmp,embree\n"
      "  tetrace reproduce table5 --searches 1000x16384 --backend openmp,cuda\n"

@@ -108,8 +108,9 @@ Options with_default_layouts(Options options)
     return options;
 }
 
-/// The rows of one repetition, into checked. journal: of its views; may be null.
-void verify_once(const std::vector<RowKey>& keys, const Options& options, Journal* journal, Checked& checked)
+/// The rows of one repetition. journal: of its views; may be null.
+std::vector<RowRecord> verify_once(const std::vector<RowKey>& keys, const Options& options, Journal* journal,
+                                   Checked& checked)
 {
     Budget budget(options.budget_s);
     SceneRows run = open_and_verify(keys, options,
@@ -121,7 +122,7 @@ void verify_once(const std::vector<RowKey>& keys, const Options& options, Journa
     for (RowRun& row : run.rows)
         note_walks(row);
     checked.scenes = scene_records(run, options);
-    checked.rows = records_of(run.rows);
+    return records_of(run.rows);
 }
 
 /// Does the check as often as --repeat says. An interrupted repetition counts only if it is the first. The journal has
@@ -131,22 +132,24 @@ void verify_all(const std::vector<RowKey>& keys, const Options& options, Journal
     const bool repeats = options.repeat > 1;
     KeptParts kept(repeats ? journal : nullptr, options);
     std::vector<std::vector<RowRecord>> repetitions;
+    std::vector<nlohmann::json> kept_scenes;
     for (unsigned i = 1; i <= options.repeat && (i == 1 || !is_interrupted()); ++i) {
         const std::string name = fmt::format("repetition {}", i);
-        if (auto part = kept.find(name)) {
+        if (auto part = kept.find(name, keys)) {
+            kept.require_same(part->scenes, kept_scenes);
             repetitions.push_back(std::move(part->rows));
-            checked.scenes = std::move(part->scenes);
+            checked.scenes = kept_scenes = std::move(part->scenes);
             continue;
         }
         try {
-            verify_once(keys, options, repeats ? nullptr : journal, checked);
+            auto rows = verify_once(keys, options, repeats ? nullptr : journal, checked);
+            kept.require_same(checked.scenes, kept_scenes);
+            const bool is_whole = !is_interrupted();
+            if (is_whole) kept.keep(name, {rows, checked.scenes, {}});
+            if (is_whole || i == 1) repetitions.push_back(std::move(rows));
         } catch (const Error& error) {
-            if (repetitions.empty() || error.kind() != ErrorKind::interrupted) throw; // else it had no answer yet
-            break;
+            if (i == 1 || error.kind() != ErrorKind::interrupted) throw; // else it had no answer yet
         }
-        if (!repetitions.empty() && is_interrupted()) break;
-        if (!is_interrupted()) kept.keep(name, {checked.rows, checked.scenes, {}});
-        repetitions.push_back(std::move(checked.rows));
     }
     checked.rows = combined_rows(repetitions, options.allow_flawed);
     checked.judgement =

@@ -135,10 +135,11 @@ nlohmann::json besides_of(const Rung& scene)
             {"verifying_s", scene.preparation.verifying_s}};
 }
 
-std::optional<Rung> kept_rung(const KeptParts& kept, const std::string& name)
+std::optional<Rung> kept_rung(const KeptParts& kept, const std::string& name, const std::vector<RowKey>& rows)
 {
     Rung scene;
-    auto part = kept.find(name, [&](const nlohmann::json& besides) {
+    auto part = kept.find(name, rows, [&](const nlohmann::json& besides) {
+        if (besides.at("costs").size() != rows.size()) throw std::domain_error("rows lack their rays alone");
         for (const nlohmann::json& one : besides.at("costs"))
             scene.costs.push_back({one.at("steps"), one.at("alone_s")});
         scene.preparation = {besides.at("making_s"), besides.at("verifying_s")};
@@ -200,7 +201,7 @@ Ladder run_ladder(const Options& options, const std::vector<RowKey>& rows, KeptP
             std::ranges::move(scene.costs, std::back_inserter(ladder.costs));
             append(ladder.result, std::move(scene.part), label);
         };
-        if (auto known = kept_rung(kept, label)) {
+        if (auto known = kept_rung(kept, label, of_rows)) {
             add(*std::move(known));
             continue;
         }

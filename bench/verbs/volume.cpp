@@ -55,6 +55,17 @@ Options with_task(Options options, Task task)
     return options;
 }
 
+/// Its rows of all tasks, by the scene's name on the page.
+std::vector<RowKey> rows_of_scene(const VolumeScene& scene)
+{
+    std::vector<RowKey> rows;
+    for (const Task task : volume_tasks)
+        std::ranges::move(rows_of_task(with_task(scene.options, task)), std::back_inserter(rows));
+    for (RowKey& row : rows)
+        row.scene = scene.label;
+    return rows;
+}
+
 /// The first row of project on openmp has the walks of the lines.
 bool has_lines(const RowRun& row)
 {
@@ -140,10 +151,11 @@ nlohmann::json besides_of_volume(const Volume& scene)
     return lines;
 }
 
-std::optional<Volume> kept_volume(const KeptParts& kept, const std::string& label)
+std::optional<Volume> kept_volume(const KeptParts& kept, const VolumeScene& asked)
 {
     Volume scene;
-    auto part = kept.find(label, [&](const nlohmann::json& besides) {
+    const std::string& label = asked.label;
+    auto part = kept.find(label, rows_of_scene(asked), [&](const nlohmann::json& besides) {
         for (const nlohmann::json& test : besides)
             scene.lines.push_back(
                 {label,
@@ -198,8 +210,7 @@ nlohmann::json volume_head(const Options& options, const std::vector<VolumeScene
     nlohmann::json requests = nlohmann::json::array();
     for (const VolumeScene& scene : scenes) {
         requests.push_back(scene_head(scene_requests(scene.options).front(), scene.label));
-        for (const Task task : volume_tasks)
-            std::ranges::move(rows_of_task(with_task(scene.options, task)), std::back_inserter(rows));
+        std::ranges::move(rows_of_scene(scene), std::back_inserter(rows));
     }
     nlohmann::json head = run_head(options, rows);
     head["scenes"] = std::move(requests);
@@ -218,7 +229,7 @@ Volume run_volume(const Options& options, const std::vector<VolumeScene>& scenes
             append(volume.result, {std::move(result.rows), std::move(result.scenes), std::move(result.measurement)},
                    "");
         };
-        if (auto known = kept_volume(kept, scenes[i].label)) {
+        if (auto known = kept_volume(kept, scenes[i])) {
             add(*std::move(known));
             continue;
         }

@@ -27,14 +27,14 @@ protected:
     {
         const ScopedVariable faulty("FAULTY_OPENCL", fault);
         const ScopedVariable preload("LD_PRELOAD", TETRACE_FAULTY_OPENCL);
-        return run(arguments +
-                   " --backend openmp,opencl --scene cubes --resolution 4 --size 24 --camera-set smoke --threads 2 "
-                   "--method maria");
+        return run(arguments + same_rows_);
     }
 
     /// With a blank where a line was broken.
     static std::string unwrapped(const std::string& text) { return std::regex_replace(text, std::regex("\\s+"), " "); }
 
+    std::string same_rows_ = " --backend openmp,opencl --scene cubes --resolution 4 --size 24 --camera-set smoke "
+                             "--threads 2 --method maria";
     std::string crash_ = "was ended by signal 6 (SIGABRT, Aborted) while ";
 };
 
@@ -211,6 +211,26 @@ TEST_F(DriverFaults, known_failure_passes_and_its_absence_is_an_unexpected_pass)
     EXPECT_EQ(other.code, 0) << other.out;
     EXPECT_TRUE(contains(other.out, "Unknown   no file of --expect mentions pocl-")) << other.out;
     EXPECT_EQ(run_faulty(fault, check + "--expect other.json").code, 1);
+}
+
+TEST_F(DriverFaults, failure_before_an_interrupt_counts_after_a_resume)
+{
+    if (!has("opencl")) GTEST_SKIP() << "an OpenCL device is missing";
+    ::signal(SIGINT, SIG_DFL); // a shell's background jobs ignore it, and so would the program
+    const std::string check = "check --views 0 --layout tet80 --repeat 2 --out check.json ";
+    {
+        // After the head and a repetition.
+        const ScopedVariable faulty("FAULTY_OPENCL", "launch:3 abort"), sync("TETRACE_KILLED_AT_SYNC", "2"),
+            signal("TETRACE_SYNC_SIGNAL", std::to_string(SIGINT)),
+            preload("LD_PRELOAD", TETRACE_FAULTY_OPENCL ":" TETRACE_KILLING_SYNC);
+        const Ended ended = run(check + same_rows_);
+        ASSERT_EQ(ended.code, 130) << ended.out << ended.errors;
+    }
+    const Ended resumed = run_faulty("none", check + "--resume");
+    EXPECT_EQ(resumed.code, 1) << resumed.out << resumed.errors;
+    EXPECT_TRUE(contains(resumed.out, "differs between repetitions: error in 1 of 2")) << resumed.out;
+    EXPECT_TRUE(contains(resumed.out, "was ended by signal 6 (SIGABRT, Aborted) while launching")) << resumed.out;
+    EXPECT_TRUE(contains(file("check.json"), R"("repeated":["error","bit-exact"])")) << file("check.json");
 }
 
 TEST_F(DriverFaults, failure_in_one_of_several_repetitions_is_a_flake_with_its_rate)

@@ -46,7 +46,7 @@ FIGURE = {
     "notes": [],
 }
 # Variables that the program needs of its environment: where compiled kernels are, and what makes tests quick.
-KEPT = ("XDG_CACHE_HOME", "OMP_WAIT_POLICY", "TETRACE_QUICK_COPIES")
+KEPT = ("XDG_CACHE_HOME", "POCL_CACHE_DIR", "MESA_SHADER_CACHE_DIR", "OMP_WAIT_POLICY", "TETRACE_QUICK_COPIES")
 # Everything below these has keys or types of its own choice: Google Benchmark's, scenes' and devices' names, columns.
 FREE_KEYS = {("matrix",), ("matrix", "*"), ("matrix", "*", "*")}
 

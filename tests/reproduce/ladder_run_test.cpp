@@ -1,3 +1,4 @@
+#include "tests/reproduce/journal_lines.h"
 #include "tests/reproduce/reproduce_fixture.h"
 
 using namespace tetrace::test;
@@ -72,10 +73,19 @@ TEST_F(LadderRun, goes_on_after_the_scenes_of_its_journal)
     }
     const auto readings = after.at("pulses").at(0).at("readings");
     EXPECT_TRUE(std::ranges::is_sorted(readings)) << readings;
+    const std::string journal = read_text(folder_ / "r.json.journal");
     EXPECT_EQ(run(ladder + " --resume").code, 0);
     const auto again = result("r.json");
     for (std::size_t i = 0; i < 6; ++i)
         EXPECT_EQ(again.at("rows").at(i).at("times"), after.at("rows")[i].at("times")) << "from the journal alone";
+    for (const std::string part : {"/besides/costs/0", "/tetrace/samples_a_row", "/besides"}) {
+        auto entries = entries_of(journal);
+        entries.at(2) = entries[2].patch({{{"op", "remove"}, {"path", part}}});
+        write_file(folder_ / "r.json.journal", journal_of(entries));
+        const Ended damaged = run(ladder + " --resume");
+        EXPECT_EQ(damaged.code, 2) << part << damaged.errors;
+        EXPECT_TRUE(contains(damaged.errors, "lattice:5 in the journal is damaged: ")) << damaged.errors;
+    }
 }
 
 TEST_F(LadderRun, wrong_command_lines_are_refused)

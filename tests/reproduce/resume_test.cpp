@@ -345,8 +345,21 @@ TEST_F(Resume, a_check_goes_on_after_its_finished_repetitions)
         EXPECT_EQ(damaged.code, 2) << damaged.out;
         EXPECT_TRUE(contains(damaged.errors, why)) << damaged.errors;
     };
-    first.erase("status");
-    refused(check, journal_of(entries), "repetition 1 in the journal is damaged: ");
+    const json whole = entries.at(1);
+    const auto damaged = [&](const std::string& why, const std::function<void(json & entry)>& damage) {
+        entries.at(1) = whole;
+        damage(entries.at(1));
+        refused(check, journal_of(entries), why);
+    };
+    const std::string begins = "repetition 1 in the journal is damaged: ";
+    damaged(begins, [](json& entry) { entry["tetrace"]["rows"][0].erase("status"); });
+    damaged(begins + "it has 0 rows, not 1", [](json& entry) { entry["tetrace"]["rows"].clear(); });
+    damaged(begins + "this run does not have the row 'other'",
+            [](json& entry) { entry["tetrace"]["rows"][0]["name"] = "other"; });
+    damaged(begins + "65 of 64 rays", [](json& entry) { entry["tetrace"]["rows"][0]["counts"]["hits"] = 65; });
+    damaged(begins, [](json& entry) { entry.erase("usable"); });
+    damaged("the journal has rows of another cubes: its mesh or its tets have changed",
+            [](json& entry) { entry["tetrace"]["scenes"][0]["hash"] = "0123456789abcdef"; });
     entries.at(1) = {{"batch", 0}};
     refused(check, journal_of(entries), "that does not belong to this run");
     refused("--size 8 --views 0 --layout tet80 --method maria --out r.json", journal, "repeats");
