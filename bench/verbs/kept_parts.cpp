@@ -16,7 +16,7 @@ namespace {
 using nlohmann::json;
 
 constexpr const char *name_key = "part", *section_key = "tetrace", *ended_key = "ended", *usable_key = "usable",
-                     *besides_key = "besides", *until_key = "until_s";
+                     *extra_key = "extra", *until_key = "until_s";
 
 /// What results lack: kinds of errors, devices of rows without a scene, whether a device can be used.
 void fill_in(RowRecord& row, const std::string& name, const std::vector<RowKey>& keys, const json& entry)
@@ -75,7 +75,7 @@ std::optional<KeptPart> KeptParts::find(const std::string& name, const std::vect
             KeptPart part = part_from(entry, rows, journal_file(*options_->out));
             if (read) {
                 part.measurement = read_measurement(ResultValue(entry[section_key], name));
-                read(entry.at(besides_key));
+                read(entry.at(extra_key));
             }
             something_to_keep();
             return part;
@@ -85,7 +85,7 @@ std::optional<KeptPart> KeptParts::find(const std::string& name, const std::vect
     return std::nullopt;
 }
 
-void KeptParts::keep(const std::string& name, const KeptPart& part, json besides)
+void KeptParts::keep(const std::string& name, const KeptPart& part, json extra)
 {
     if (journal_ == nullptr) return;
     json section = result_head(*options_), ended = json::object(), usable = json::object();
@@ -102,7 +102,7 @@ void KeptParts::keep(const std::string& name, const KeptPart& part, json besides
                       {section_key, std::move(section)},
                       {ended_key, std::move(ended)},
                       {usable_key, std::move(usable)},
-                      {besides_key, std::move(besides)},
+                      {extra_key, std::move(extra)},
                       {until_key, clock_()}});
 }
 

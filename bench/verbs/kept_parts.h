@@ -28,12 +28,12 @@ public:
     KeptParts(Journal* journal, const Options& options);
 
     /// The part, if an earlier process of the run finished it. rows: those that it must have. read: of a part that is
-    /// timed; gets what its verb kept besides, and may throw JSON's exceptions and std::logic_error. Throws as the
-    /// constructor does.
+    /// timed; gets the extra data that its verb kept, and may throw JSON's exceptions and std::logic_error. Throws as
+    /// the constructor does.
     [[nodiscard]] std::optional<KeptPart> find(const std::string& name, const std::vector<RowKey>& rows,
                                                const std::function<void(const nlohmann::json&)>& read = {}) const;
     /// A part of which a scene could not be loaded is not kept: it is tried again.
-    void keep(const std::string& name, const KeptPart& part, nlohmann::json besides = {});
+    void keep(const std::string& name, const KeptPart& part, nlohmann::json extra = {});
     /// Throws Error{usage} if one of these scenes has the name of one of the others, and another hash.
     void require_same(const std::vector<nlohmann::json>& scenes, const std::vector<nlohmann::json>& others) const;
 

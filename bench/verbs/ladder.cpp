@@ -124,8 +124,8 @@ struct Rung {
     Preparation preparation;
 };
 
-/// What the journal keeps of it besides its part.
-nlohmann::json besides_of(const Rung& scene)
+/// What the journal keeps of it in addition to its part.
+nlohmann::json extra_of(const Rung& scene)
 {
     nlohmann::json costs = nlohmann::json::array();
     for (const StepCosts& one : scene.costs)
@@ -138,11 +138,11 @@ nlohmann::json besides_of(const Rung& scene)
 std::optional<Rung> kept_rung(const KeptParts& kept, const std::string& name, const std::vector<RowKey>& rows)
 {
     Rung scene;
-    auto part = kept.find(name, rows, [&](const nlohmann::json& besides) {
-        if (besides.at("costs").size() != rows.size()) throw std::domain_error("rows lack their rays alone");
-        for (const nlohmann::json& one : besides.at("costs"))
+    auto part = kept.find(name, rows, [&](const nlohmann::json& extra) {
+        if (extra.at("costs").size() != rows.size()) throw std::domain_error("rows lack their rays alone");
+        for (const nlohmann::json& one : extra.at("costs"))
             scene.costs.push_back({one.at("steps"), one.at("alone_s")});
-        scene.preparation = {besides.at("making_s"), besides.at("verifying_s")};
+        scene.preparation = {extra.at("making_s"), extra.at("verifying_s")};
     });
     if (!part) return std::nullopt;
     scene.part = *std::move(part);
@@ -215,7 +215,7 @@ Ladder run_ladder(const Options& options, const std::vector<RowKey>& rows, KeptP
         }
         Rung scene =
             run_scene(of_rows, of_scene, kept.clock(), left_s / static_cast<double>(options.scenes.size() - i));
-        if (!is_interrupted()) kept.keep(label, scene.part, besides_of(scene));
+        if (!is_interrupted()) kept.keep(label, scene.part, extra_of(scene));
         add(std::move(scene));
     }
     complete(ladder.result, options);

@@ -18,8 +18,8 @@ struct Ladder {
 /// each; half32, tet64 and bvh2 in one form each.
 [[nodiscard]] Options ladder_options(Options options);
 
-/// Adds a timed part to those of other scenes. Of its scenes, one that the result has already is left out. scene: for
-/// the names of GPUs' pulses; empty if they have it.
+/// Adds a timed part to those of other scenes. A scene that the result has already is left out. scene: for the names of
+/// GPUs' pulses; empty if they have it.
 void append(BenchResult& to, KeptPart part, const std::string& scene);
 
 /// Measures scene after scene, in the order of the options: each is closed before the next is made, and kept. A scene

@@ -160,6 +160,14 @@ struct JudgedRows {
     }
 };
 
+/// Once the result is delivered: the exit code. journal: ends, unless the run can go on.
+int end_run(bool interrupted, Journal* journal, const Options& options, const JudgedRows& judged)
+{
+    if (interrupted) return end_interrupted();
+    end_journal(journal, options);
+    return judged.exit_code(options);
+}
+
 /// A run of `bench` over the scenes and rows of the claims, which are then judged.
 int reproduce_rivals(const Options& asked, JudgedRows& judged)
 {
@@ -177,9 +185,7 @@ int reproduce_rivals(const Options& asked, JudgedRows& judged)
     const auto tables = rival_tables(result.rows, contest_scenes(result.scenes), left_out(options));
     judged.set(result.rows);
     deliver_besides_junit(options, bench_run_report(result, tables, {}, options));
-    if (result.interrupted) return end_interrupted();
-    end_journal(journal.get(), options);
-    return judged.exit_code(options);
+    return end_run(result.interrupted, journal.get(), options, judged);
 }
 
 /// A run of `bench` for each scene, smallest first, and rays alone.
@@ -197,9 +203,7 @@ int reproduce_ladder(const Options& asked, JudgedRows& judged)
     judged.set(ladder.result.rows);
     deliver_besides_junit(options, bench_run_report(ladder.result, {ladder_table(ladder.result.rows, ladder.costs)},
                                                     ladder_figures(ladder.result.rows, ladder.costs), options));
-    if (ladder.result.interrupted) return end_interrupted();
-    end_journal(journal.get(), options);
-    return judged.exit_code(options);
+    return end_run(ladder.result.interrupted, journal.get(), options, judged);
 }
 
 /// A run of `bench` for each scene and task that crosses tets.
@@ -223,9 +227,7 @@ int reproduce_volume(const Options& asked, JudgedRows& judged)
     deliver_besides_junit(asked, bench_run_report(volume.result,
                                                   {volume_table(volume.result.rows), volume_lines_table(volume.lines)},
                                                   {}, asked));
-    if (volume.result.interrupted) return end_interrupted();
-    end_journal(journal.get(), options);
-    return judged.exit_code(options);
+    return end_run(volume.result.interrupted, journal.get(), options, judged);
 }
 
 int reproduce_paper(const Options& asked, JudgedRows& judged)
@@ -261,9 +263,7 @@ int reproduce_paper(const Options& asked, JudgedRows& judged)
     make_tables(all, options);
     judged.set(all_rows(all));
     deliver_besides_junit(options, reproduction_report(all, options));
-    if (is_interrupted()) return end_interrupted();
-    end_journal(keeping.journal.get(), options);
-    return judged.exit_code(options);
+    return end_run(is_interrupted(), keeping.journal.get(), options, judged);
 }
 
 } // namespace

@@ -136,8 +136,8 @@ CellTest cells_from(const nlohmann::json& four)
     return {four.at(0), four.at(1), four.at(2), four.at(3)};
 }
 
-/// What the journal keeps of a scene besides its part.
-nlohmann::json besides_of_volume(const Volume& scene)
+/// What the journal keeps of a scene in addition to its part.
+nlohmann::json extra_of_volume(const Volume& scene)
 {
     nlohmann::json lines = nlohmann::json::array();
     for (const auto& [name, test] : scene.lines)
@@ -155,8 +155,8 @@ std::optional<Volume> kept_volume(const KeptParts& kept, const VolumeScene& aske
 {
     Volume scene;
     const std::string& label = asked.label;
-    auto part = kept.find(label, rows_of_scene(asked), [&](const nlohmann::json& besides) {
-        for (const nlohmann::json& test : besides)
+    auto part = kept.find(label, rows_of_scene(asked), [&](const nlohmann::json& extra) {
+        for (const nlohmann::json& test : extra)
             scene.lines.push_back(
                 {label,
                  {test.at("lines"), test.at("meetings"), test.at("mean_length"), test.at("expected_length"),
@@ -243,7 +243,7 @@ Volume run_volume(const Options& options, const std::vector<VolumeScene>& scenes
         Volume scene = run_scene(scenes[i], kept.clock(), left_s / static_cast<double>(scenes.size() - i));
         if (!is_interrupted() && !scene.result.rows.empty())
             kept.keep(scenes[i].label, {scene.result.rows, scene.result.scenes, scene.result.measurement},
-                      besides_of_volume(scene));
+                      extra_of_volume(scene));
         add(std::move(scene));
     }
     return volume;

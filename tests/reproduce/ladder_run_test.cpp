@@ -78,7 +78,7 @@ TEST_F(LadderRun, goes_on_after_the_scenes_of_its_journal)
     const auto again = result("r.json");
     for (std::size_t i = 0; i < 6; ++i)
         EXPECT_EQ(again.at("rows").at(i).at("times"), after.at("rows")[i].at("times")) << "from the journal alone";
-    for (const std::string part : {"/besides/costs/0", "/tetrace/samples_a_row", "/besides"}) {
+    for (const std::string part : {"/extra/costs/0", "/tetrace/samples_a_row", "/extra"}) {
         auto entries = entries_of(journal);
         entries.at(2) = entries[2].patch({{{"op", "remove"}, {"path", part}}});
         write_file(folder_ / "r.json.journal", journal_of(entries));
