@@ -71,19 +71,19 @@ namespace {
 
 /// The device of a contest: its hardware, and the API too if that is emulated; how many threads use it, and how many
 /// launches are in flight on it.
-using Place = std::tuple<DeviceKind, std::size_t, std::string, unsigned, unsigned>;
+using DevicePlace = std::tuple<DeviceKind, std::size_t, std::string, unsigned, unsigned>;
 
 /// Empty if nothing is known. A row whose scene could not be loaded has no device.
-std::optional<Place> place_of(const RowRecord& row, std::size_t hardware)
+std::optional<DevicePlace> place_of(const RowRecord& row, std::size_t hardware)
 {
     const RowKey& key = row.key;
     if (row.device.name.empty()) {
         if (!on_reference(key) && !is_embree(key.kernel.layout)) return std::nullopt;
-        return Place{DeviceKind::cpu, std::numeric_limits<std::size_t>::max(), {}, key.threads, key.in_flight};
+        return DevicePlace{DeviceKind::cpu, std::numeric_limits<std::size_t>::max(), {}, key.threads, key.in_flight};
     }
     const bool is_emulated = row.device.kind == DeviceKind::emulated;
-    return Place{row.device.kind, hardware, is_emulated ? device_label(key) : std::string(), key.threads,
-                 key.in_flight};
+    return DevicePlace{row.device.kind, hardware, is_emulated ? device_label(key) : std::string(), key.threads,
+                       key.in_flight};
 }
 
 TotalCost total_cost(const SetupCost& cost, double mrays_per_s)
@@ -106,7 +106,7 @@ std::vector<Contest<RowRecord>> contests_of(const std::vector<const RowRecord*>&
         devices.push_back(row->device);
     const auto hardware = physical_devices(devices);
     std::vector<const RowRecord*> placed;
-    std::map<const RowRecord*, Place> places;
+    std::map<const RowRecord*, DevicePlace> places;
     for (std::size_t i = 0; i < rows.size(); ++i)
         if (const auto place = place_of(*rows[i], hardware[i])) {
             placed.push_back(rows[i]);

@@ -210,6 +210,14 @@ RowSamples samples_from(const nlohmann::json& object)
     return samples;
 }
 
+void drop_samples(nlohmann::json& record)
+{
+    if (!record.contains("samples_s")) return;
+    record["samples_s"] = record["wall_samples_s"] = json::array();
+    for (const char* const of_samples : {"passes", "gpu"})
+        record.erase(of_samples);
+}
+
 void require_samples(const RowSamples& samples, std::size_t count, bool with_intervals)
 {
     const auto is_time = [](double seconds) { return std::isfinite(seconds) && seconds > 0; };

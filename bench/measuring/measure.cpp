@@ -490,7 +490,7 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
                                          : flags.repetitions.value_or(affordable_samples(
                                                options.samples, result.runs * part.sweep_s, for_samples_s));
     result.lowered = !flags.repetitions && result.samples < options.samples;
-    const auto timed = std::ranges::count_if(rows, is_timed);
+    const auto timed = std::ranges::count_if(rows, [](const RowRun& row) { return is_timed(row); });
     if (timed == 0) return result;
     const auto groups = sample_groups(pointers_to(rows));
     const Stopwatch stopwatch;

@@ -1,6 +1,7 @@
 #include "bench/merging/merged_rows.h"
 
 #include "bench/measuring/image_record.h"
+#include "bench/results/row_keys.h"
 #include "bench/show/recorded_rows.h"
 #include "bench/statistics/statistics.h"
 #include "bench/terminal/text.h"
@@ -40,16 +41,12 @@ json host_kind(const json& section)
 }
 
 /// The rows of scenes, and those of searches.
-std::vector<const json*> rows_of(const ShardResult& shard)
+std::vector<ResultValue> rows_of(const ShardResult& shard)
 {
-    std::vector<const json*> rows;
-    const json& section = shard.section();
-    const auto add = [&](const json& list) {
-        for (const json& row : list)
-            rows.push_back(&row);
-    };
-    add(section.at("rows"));
-    if (section.contains("searches")) add(section["searches"].at("rows"));
+    const ResultValue section = shard.result.section();
+    std::vector<ResultValue> rows = section.at("rows").items();
+    if (const auto searches = section.find("searches"))
+        std::ranges::move(searches->at("rows").items(), std::back_inserter(rows));
     return rows;
 }
 
@@ -69,20 +66,23 @@ struct Work {
     double rays = 0, seconds = 0;
 };
 
-std::uint64_t rays_of(const json& row)
+std::uint64_t rays_of(const ResultValue& row)
 {
-    if (row.contains("counts")) return row["counts"].value("rays", std::uint64_t{0});
-    return row.contains("verification") ? row["verification"].value("searches", std::uint64_t{0}) : 0;
+    if (const auto rays = row.find(row_key::ray_count)) return rays->count();
+    const auto verification = row.find(row_key::verification);
+    const auto searches = verification ? verification->find("searches") : std::nullopt;
+    return searches ? searches->count() : 0;
 }
 
-void add_work(std::vector<std::pair<std::string, Work>>& all, const json& row)
+void add_work(std::vector<std::pair<std::string, Work>>& all, const ResultValue& row)
 {
-    if (!row.contains("times") || !row["times"].contains("samples_s")) return;
-    const std::string name = row.at("name");
+    const auto samples_s = row.find(row_key::samples_s);
+    if (!samples_s) return;
+    const std::string name = row.at(row_key::name).line();
     auto place = std::ranges::find(all, name, &std::pair<std::string, Work>::first);
     if (place == all.end()) place = all.insert(all.end(), {name, {}});
     place->second.rays += static_cast<double>(rays_of(row));
-    place->second.seconds += statistics_of(row["times"]["samples_s"].get<std::vector<double>>()).median;
+    place->second.seconds += statistics_of(samples_s->json().get<std::vector<double>>()).median;
 }
 
 json rates_json(const std::vector<std::pair<std::string, Work>>& all)
@@ -100,10 +100,10 @@ bool is_of_one_kind(const std::vector<ShardResult>& shards, const std::string& n
 {
     std::vector<json> kinds;
     for (const ShardResult& shard : shards)
-        for (const json* row : rows_of(shard))
-            if (row->at("name") == name) {
+        for (const ResultRow* row : shard.result.timed_rows())
+            if (row->name == name) {
                 json kind = host_kind(shard.section());
-                if (row->contains("device")) kind["device"] = device_kind((*row)["device"]);
+                if (row->device_kind) kind["device"] = {row->device, row->driver, name_of(*row->device_kind)};
                 kinds.push_back(std::move(kind));
             }
     return std::ranges::adjacent_find(kinds, std::not_equal_to<>()) == kinds.end();
@@ -127,8 +127,8 @@ nlohmann::json machines_json(const std::vector<ShardResult>& shards)
         std::vector<std::pair<std::string, Work>> work;
         for (const ShardResult* shard : kinds[kind]) {
             machine["shards"].push_back(shard->shard.number);
-            for (const json* row : rows_of(*shard))
-                add_work(work, *row);
+            for (const ResultValue& row : rows_of(*shard))
+                add_work(work, row);
         }
         machine["rows"] = rates_json(work);
         machines.push_back(std::move(machine));
@@ -221,10 +221,7 @@ void strip(json& entry, StrippedRows& stripped)
 {
     for (auto& [name, record] : entry.at("rows").items()) {
         if (record.contains("chained_hash")) record["chained_hash"] = hash_text(0);
-        if (!record.contains("samples_s") || !stripped.has(name)) continue;
-        record["samples_s"] = record["wall_samples_s"] = json::array();
-        for (const char* const of_samples : {"passes", "gpu"})
-            record.erase(of_samples);
+        if (stripped.has(name)) drop_samples(record);
     }
 }
 

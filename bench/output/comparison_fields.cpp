@@ -58,18 +58,18 @@ std::vector<RowField> reference_fields()
 {
     return {
         {"", "comparison", &ratio_with_interval, rates("x {reference}")},
-        {ratio_group, "row",
+        {ratio_group, ratio_key::row,
          [](const RowFacts& facts) { return facts.comparison ? json(row_name(facts.row->key)) : json(); },
          recorded("line", required)},
-        {ratio_group, "ratio", &Comparison::ratio,
+        {ratio_group, ratio_key::ratio, &Comparison::ratio,
          recorded("positive", required,
                   "the reference's median device seconds over the row's: above 1 the row is faster"),
          csv("ratio to reference")},
-        {ratio_group, "low", end_of_interval(&FactorInterval::low),
+        {ratio_group, ratio_key::low, end_of_interval(&FactorInterval::low),
          recorded("positive", optional,
                   "of the interval, of samples or over runs; left out where a row has fewer than 5 samples"),
          csv({.title = "low", .key = "ratio_low"})},
-        {ratio_group, "high", end_of_interval(&FactorInterval::high), recorded("positive"),
+        {ratio_group, ratio_key::high, end_of_interval(&FactorInterval::high), recorded("positive"),
          csv({.title = "high", .key = "ratio_high"})},
         {ratio_group, "confidence",
          [](const Comparison& comparison) {
@@ -82,8 +82,9 @@ std::vector<RowField> reference_fields()
          [](const Comparison& comparison) { return comparison.runs > 1 ? json(comparison.runs) : json(); },
          recorded(R"({ "type": "integer", "minimum": 2 })", optional,
                   "that the interval spans; left out if it is of the samples of one run")},
-        {ratio_group, "reference", [](const Comparison& comparison) { return row_name(comparison.reference->key); },
-         recorded("line", required), csv("reference")},
+        {ratio_group, ratio_key::reference,
+         [](const Comparison& comparison) { return row_name(comparison.reference->key); }, recorded("line", required),
+         csv("reference")},
     };
 }
 
@@ -92,18 +93,18 @@ std::vector<RowField> bvh_fields()
     return {
         {"", "best_bvh_comparison", of_best_bvh(&ratio_with_interval),
          rates({.title = "x best BVH", .key = "ratio_to_best_bvh"})},
-        {"rates", "best_bvh", of_best_bvh([](const Comparison& best) { return row_name(best.reference->key); }),
+        {row_key::best_bvh, of_best_bvh([](const Comparison& best) { return row_name(best.reference->key); }),
          recorded(
              "line", optional,
              "the fastest row of a BVH that traced the same rays on the same device: on the host ours under openmp "
              "and Embree's, on a GPU those of all its APIs, on an emulated device its own"),
          csv("best BVH")},
-        {"rates", "ratio_to_best_bvh", of_best_bvh([](const Comparison& best) { return best.ratio; }),
+        {row_key::ratio_to_best_bvh, of_best_bvh([](const Comparison& best) { return best.ratio; }),
          recorded("positive", optional, "that BVH's median device seconds over the row's: above 1 the row is faster"),
          csv("ratio to best BVH")},
-        {"rates", "ratio_to_best_bvh_low", [](const RowFacts& facts) { return bvh_end(facts, &FactorInterval::low); },
+        {row_key::ratio_to_best_bvh_low, [](const RowFacts& facts) { return bvh_end(facts, &FactorInterval::low); },
          recorded("positive", optional, "of its interval, as in tetrace.ratios"), csv("low")},
-        {"rates", "ratio_to_best_bvh_high", [](const RowFacts& facts) { return bvh_end(facts, &FactorInterval::high); },
+        {row_key::ratio_to_best_bvh_high, [](const RowFacts& facts) { return bvh_end(facts, &FactorInterval::high); },
          recorded("positive"), csv("high")},
         {"rates", "ratio_to_single", &RowFacts::ratio_to_single,
          recorded("positive", optional, "to Embree's single rays on the same scene, same run; of rows on the host"),

@@ -19,7 +19,7 @@ std::vector<Column> columns_of(Place place, const std::string& reference)
         if (const Shown& shown = field.*place; shown.title != nullptr)
             columns.push_back({shown.key != nullptr ? shown.key : field.key,
                                fmt::format(fmt::runtime(shown.title), fmt::arg("reference", reference)), shown.unit,
-                               shown.decimals, std::string_view(field.key) == "status", shown.rank});
+                               shown.decimals, std::string_view(field.key) == row_key::status.key, shown.rank});
     return columns;
 }
 
@@ -31,6 +31,11 @@ std::vector<Cell> cells_of(Place place, const RowFacts& facts)
     return cells;
 }
 
+nlohmann::json& field_in(nlohmann::json& row, const RowPath& path)
+{
+    return (*path.group == '\0' ? row : row[path.group])[path.key];
+}
+
 nlohmann::json row_json(const RowFacts& facts)
 {
     nlohmann::json object;
@@ -39,7 +44,7 @@ nlohmann::json row_json(const RowFacts& facts)
         const bool is_grouped = *field.group != '\0';
         if (is_grouped && traced(*facts.row) == nullptr) continue; // all groups describe an answer
         nlohmann::json value = field.value(facts);
-        if (!value.is_null()) (is_grouped ? object[field.group] : object)[field.key] = std::move(value);
+        if (!value.is_null()) field_in(object, field) = std::move(value);
     }
     return object;
 }

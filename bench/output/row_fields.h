@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bench/output/field_value.h"
+#include "bench/results/row_keys.h"
 #include "bench/terminal/table.h"
 
 namespace tetrace {
@@ -28,17 +29,20 @@ struct Recorded {
 struct PlacedColumn;
 
 /// A field of a row, with everything that any output needs. A table has its columns in the order of row_fields().
-struct RowField : Recorded {
+struct RowField : RowPath, Recorded {
     /// outputs: a Recorded where JSON has the field, and a PlacedColumn for each table that has it.
     template <class... Output>
-    RowField(const char* in_group, const char* with_key, FieldValue read, const Output&... outputs)
-        : group(in_group), key(with_key), value(std::move(read))
+    RowField(const RowPath& path, FieldValue read, const Output&... outputs) : RowPath(path), value(std::move(read))
     {
         (add(outputs), ...);
     }
+    /// The same for a key that no other code names.
+    template <class... Output>
+    RowField(const char* in_group, const char* with_key, FieldValue read, const Output&... outputs)
+        : RowField(RowPath{in_group, with_key}, std::move(read), outputs...)
+    {
+    }
 
-    const char* group; ///< the object of the row's JSON that holds it, such as "times"; empty: the row itself
-    const char* key;
     FieldValue value;
     Shown csv;    ///< column of `bench` as CSV and Markdown
     Shown check;  ///< the same of `check`
@@ -84,6 +88,9 @@ inline constexpr const char* ratio_group = "ratio";
 /// What made the row's result, on what and when, and its rays: the same in all rows, so that CSV of several results can
 /// be put together.
 [[nodiscard]] std::vector<RowField> origin_fields();
+
+/// The place of a field in a row's JSON, made if the row lacks it.
+[[nodiscard]] nlohmann::json& field_in(nlohmann::json& row, const RowPath& path);
 
 /// A row as results record it: those fields of row_fields() for which it has a value.
 [[nodiscard]] nlohmann::json row_json(const RowFacts& facts);

@@ -1,6 +1,7 @@
 #include "bench/output/trust.h"
 
 #include "bench/measuring/figures.h"
+#include "bench/results/row_keys.h"
 
 #include <fmt/format.h>
 
@@ -72,12 +73,11 @@ void count_rows(Steadiness& steadiness, const ResultValue& part)
     const auto rows = part.find("rows");
     if (!rows) return;
     for (const ResultValue& row : rows->items()) {
-        const auto times = row.find("times");
-        if (!times || !times->find("median_s")) continue;
+        if (!row.find(row_key::median_s)) continue;
         ++steadiness.timed;
-        const auto noisy = times->find("noisy");
+        const auto noisy = row.find(row_key::noisy);
         steadiness.noisy += noisy && noisy->flag() ? 1 : 0;
-        steadiness.disturbed += times->find("disturbed") ? 1 : 0;
+        steadiness.disturbed += row.find(row_key::disturbed) ? 1 : 0;
     }
 }
 

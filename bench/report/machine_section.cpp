@@ -1,6 +1,7 @@
 #include "bench/output/trust.h"
 #include "bench/report/charts/axis.h"
 #include "bench/report/sections.h"
+#include "bench/results/row_keys.h"
 #include "bench/terminal/text.h"
 
 #include <algorithm>
@@ -100,16 +101,15 @@ std::string self_test_text(const ResultValue& device)
     return exact && exact->json().is_object() ? exact->text_at("text") : std::string();
 }
 
-std::string api_at(const ResultValue& object, const char* index_key)
+std::string api_of(const ResultValue& backend, const std::optional<ResultValue>& index)
 {
-    const auto index = object.find(index_key);
-    return api_name(object.at("backend").line(), index ? index->count() : 0);
+    return api_name(backend.line(), index ? index->count() : 0);
 }
 
 ToldDevice device_of_bench(const ResultValue& device)
 {
     ToldDevice told;
-    told.api = api_at(device, "index");
+    told.api = api_of(device.at("backend"), device.find("index"));
     told.name = device.at("name").line();
     told.kind = device_kind_of(device);
     told.driver = device.text_at("driver");
@@ -124,15 +124,15 @@ ToldDevice device_of_bench(const ResultValue& device)
 /// Results of `check`, and of schema version 1, record devices only with their rows.
 std::optional<ToldDevice> device_of_row(const ResultValue& row)
 {
-    const auto device = row.find("device");
+    const auto device = row.find(row_key::device);
     if (!device) return std::nullopt;
     ToldDevice told;
-    told.api = api_at(row, "device_index");
+    told.api = api_of(row.at(row_key::backend), row.find(row_key::device_index));
     told.name = device->at("name").line();
     told.kind = device_kind_of(*device);
     told.driver = device->text_at("driver");
     told.memory = scaled(*device, "memory_bytes", 1e-9);
-    if (const auto test = row.find("self_test")) told.self_test = test->text_at("text");
+    if (const auto test = row.find(row_key::self_test)) told.self_test = test->text_at("text");
     return told;
 }
 
@@ -214,8 +214,7 @@ Html device_table(const ReportInput& input)
 std::string steps_text(const ResultFile& file, const std::string& scene)
 {
     for (const ResultValue& row : file.section().at("rows").items()) {
-        const auto counts = row.at("scene").line() == scene ? row.find("counts") : std::nullopt;
-        const auto mean = counts ? counts->find("mean_steps") : std::nullopt;
+        const auto mean = row.at(row_key::scene).line() == scene ? row.find(row_key::mean_steps) : std::nullopt;
         if (mean) return fmt::format("{:.2f}", mean->number());
     }
     return {};

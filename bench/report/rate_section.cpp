@@ -165,8 +165,7 @@ const char* const how_to_read_times =
 /// Empty if the row lacks the value.
 Cell cell_of_field(const RowField& field, const ResultValue& row)
 {
-    const auto group = *field.group == '\0' ? row : row.find(field.group);
-    const auto value = group ? group->find(field.key) : std::nullopt;
+    const auto value = row.find(field);
     if (!value) return {};
     try {
         return field.report.cell(value->json());

@@ -1,5 +1,6 @@
 #include "bench/report/charts/bar_chart.h"
 #include "bench/report/sections.h"
+#include "bench/results/row_keys.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -37,16 +38,15 @@ const ReportRow& row_named(const ReportInput& input, std::size_t file, const Res
     return *found;
 }
 
-double ratio_at(const ResultValue& ratio, const char* key)
+double ratio_from(const ResultValue& value)
 {
-    const ResultValue value = ratio.at(key);
     if (value.number() < 1e-9 || value.number() > 1e9) value.reject("is not between 1e-9 and 1e9");
     return value.number();
 }
 
 void add_ratio(std::vector<RatioGroup>& groups, const ReportInput& input, std::size_t file, const ResultValue& ratio)
 {
-    const ResultValue name = ratio.at("row"), reference_name = ratio.at("reference");
+    const ResultValue name = ratio.at(ratio_key::row), reference_name = ratio.at(ratio_key::reference);
     const ReportRow& row = row_named(input, file, name);
     if (!row.row->device_kind) name.reject("is of a row without a device");
     const ReportRow& reference = row_named(input, file, reference_name);
@@ -55,8 +55,8 @@ void add_ratio(std::vector<RatioGroup>& groups, const ReportInput& input, std::s
     auto group = std::ranges::find_if(groups, [&](const RatioGroup& other) { return other.key == key; });
     if (group == groups.end()) group = groups.insert(groups.end(), {key, {}});
     group->intervals.push_back({row.name(), row.kernel() + "  " + row.api, noisy ? "noisy" : "",
-                                api_series(row.row->backend), ratio_at(ratio, "ratio"), ratio_at(ratio, "low"),
-                                ratio_at(ratio, "high"), noisy});
+                                api_series(row.row->backend), ratio_from(ratio.at(ratio_key::ratio)),
+                                ratio_from(ratio.at(ratio_key::low)), ratio_from(ratio.at(ratio_key::high)), noisy});
 }
 
 Html chart_of(const RatioGroup& group, const ReportInput& input)
@@ -72,12 +72,12 @@ Html chart_of(const RatioGroup& group, const ReportInput& input)
 }
 
 /// "1.84 [1.80, 1.88]".
-std::string interval_text(const ResultValue& rates)
+std::string interval_text(const ResultValue& row)
 {
-    std::string text = fmt::format("{:.2f}", ratio_at(rates, "ratio_to_best_bvh"));
-    if (rates.find("ratio_to_best_bvh_low"))
-        text += fmt::format(" [{:.2f}, {:.2f}]", ratio_at(rates, "ratio_to_best_bvh_low"),
-                            ratio_at(rates, "ratio_to_best_bvh_high"));
+    std::string text = fmt::format("{:.2f}", ratio_from(row.at(row_key::ratio_to_best_bvh)));
+    if (row.find(row_key::ratio_to_best_bvh_low))
+        text += fmt::format(" [{:.2f}, {:.2f}]", ratio_from(row.at(row_key::ratio_to_best_bvh_low)),
+                            ratio_from(row.at(row_key::ratio_to_best_bvh_high)));
     return text;
 }
 
@@ -92,13 +92,13 @@ Html tets_over_bvhs(const ReportInput& input)
         values.push_back(rows ? rows->items() : std::vector<ResultValue>());
     }
     for (const ReportRow& row : input.rows) {
-        const auto rates = values.at(row.file).at(row.index).find("rates");
-        if (!rates || !rates->find("best_bvh") || row.structure != Structure::cdt) continue;
-        const ResultValue best = rates->at("best_bvh");
-        const ReportRow& bvh = row_named(input, row.file, best);
+        const ResultValue& value = values.at(row.file).at(row.index);
+        const auto best = value.find(row_key::best_bvh);
+        if (!best || row.structure != Structure::cdt) continue;
+        const ReportRow& bvh = row_named(input, row.file, *best);
         table.add({text(file_letter(row.file, files)), text(row.row->scene),
                    text(row.kernel_and_rays() + " " + row.api), text(row.device),
-                   text(interval_text(*rates)) +
+                   text(interval_text(value)) +
                        (is_noisy(row) || is_noisy(bvh) ? text_element("small", "", "noisy") : Html()),
                    text(bvh.kernel() + " " + bvh.api)});
     }
@@ -118,7 +118,7 @@ Section ratio_section(const ReportInput& input)
     for (std::size_t file = 0; file < input.files.size(); ++file)
         if (const auto ratios = input.files[file].section().find("ratios"))
             for (const ResultValue& ratio : ratios->items())
-                if (ratio.find("low")) add_ratio(groups, input, file, ratio);
+                if (ratio.find(ratio_key::low)) add_ratio(groups, input, file, ratio);
     Section section{"ratios", "APIs compared", {}};
     Html charts;
     for (const RatioGroup& group : groups)

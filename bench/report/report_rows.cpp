@@ -1,5 +1,6 @@
 #include "bench/report/report_rows.h"
 
+#include "bench/results/row_keys.h"
 #include "bench/rows/rows.h"
 #include "bench/terminal/text.h"
 #include "core/base/error.h"
@@ -18,16 +19,16 @@ double positive(const ResultValue& value)
     return value.number();
 }
 
-std::optional<double> positive_or_nothing(const ResultValue& object, const char* key)
+std::optional<double> positive_or_nothing(const ResultValue& row, const RowPath& field)
 {
-    const auto value = object.find(key);
+    const auto value = row.find(field);
     return value ? std::optional(positive(*value)) : std::nullopt;
 }
 
-std::optional<double> launch_share(const ResultValue& times)
+std::optional<double> launch_share(const ResultValue& row)
 {
-    const auto overhead = times.find("overhead_s");
-    const auto wall = positive_or_nothing(times, "wall_s");
+    const auto overhead = row.find(row_key::overhead_s);
+    const auto wall = positive_or_nothing(row, row_key::wall_s);
     if (!overhead || !wall) return std::nullopt;
     return std::max(0.0, overhead->number()) / *wall; // from two clocks: their difference may be negative
 }
@@ -35,36 +36,33 @@ std::optional<double> launch_share(const ResultValue& times)
 /// Older results lack the rays that enter; the hits of all are counted.
 void read_shares(ReportRow& row, const ResultValue& value)
 {
-    const auto counts = value.find("counts");
-    const auto rays = counts ? counts->find("rays") : std::nullopt;
+    const auto rays = value.find(row_key::ray_count);
     if (!rays || rays->count() == 0) return;
-    const auto share_of = [&](const char* key) -> std::optional<double> {
-        const auto count = counts->find(key);
+    const auto share_of = [&](const RowPath& field) -> std::optional<double> {
+        const auto count = value.find(field);
         if (!count) return std::nullopt;
         if (count->count() > rays->count()) count->reject("exceeds the number of rays");
         return static_cast<double>(count->count()) / static_cast<double>(rays->count());
     };
-    row.enter_share = share_of("entering");
-    row.hit_share = share_of("hits");
+    row.enter_share = share_of(row_key::entering);
+    row.hit_share = share_of(row_key::hits);
 }
 
 std::optional<RowRate> rate_of(const ResultValue& row, const std::vector<double>& samples_s)
 {
-    const auto rates = row.find("rates");
-    if (!rates) return std::nullopt;
-    const ResultValue times = row.at("times");
-    const double median_s = positive(times.at("median_s"));
+    if (!row.find(row_key::rates)) return std::nullopt;
+    const double median_s = positive(row.at(row_key::median_s));
     RowRate rate;
-    rate.mrays_per_s = positive(rates->at("mrays_per_s"));
+    rate.mrays_per_s = positive(row.at(row_key::mrays_per_s));
     const double mrays = rate.mrays_per_s * median_s;
-    rate.low = mrays / positive(times.at("upper_quartile_s"));
-    rate.high = mrays / positive(times.at("lower_quartile_s"));
+    rate.low = mrays / positive(row.at(row_key::upper_quartile_s));
+    rate.high = mrays / positive(row.at(row_key::lower_quartile_s));
     for (const double seconds : samples_s)
         rate.samples.push_back(mrays / seconds);
-    rate.msteps_per_s = positive_or_nothing(*rates, "msteps_per_s");
-    rate.bytes_per_step = positive_or_nothing(*rates, "bytes_per_step");
-    rate.ceiling_bytes_per_s = positive_or_nothing(*rates, "ceiling_bytes_per_s");
-    rate.launch_share = launch_share(times);
+    rate.msteps_per_s = positive_or_nothing(row, row_key::msteps_per_s);
+    rate.bytes_per_step = positive_or_nothing(row, row_key::bytes_per_step);
+    rate.ceiling_bytes_per_s = positive_or_nothing(row, row_key::ceiling_bytes_per_s);
+    rate.launch_share = launch_share(row);
     return rate;
 }
 
@@ -77,18 +75,18 @@ std::string unless_usual(const std::string& value, std::string_view usual)
 /// Sets the members that describe the row's kernel.
 void read_kernel(ReportRow& row, const ResultValue& value)
 {
-    read_into(row.structure, value.at("structure"));
-    const std::string method = value.at("method").line(), layout = value.at("layout").line(),
-                      math = value.at("math").line(), &schedule = row.row->schedule;
+    read_into(row.structure, value.at(row_key::structure));
+    const std::string method = value.at(row_key::method).line(), layout = value.at(row_key::layout).line(),
+                      math = value.at(row_key::math).line(), &schedule = row.row->schedule;
     row.layout = layout;
     row.known_kernel = kernel_named(method, layout, math, schedule);
     if (row.known_kernel && !is_portable(*row.known_kernel)) {
         row.walk = is_embree(row.known_kernel->layout) ? embree_title(method, layout) : layout;
         return;
     }
-    const auto ray_order = value.find("ray_order");
+    const auto ray_order = value.find(row_key::ray_order);
     row.walk = fmt::format("{}{}{}{}{}{}", row.structure == Structure::cdt ? method + " " : "", layout,
-                           unless_usual(math, "exact"), unless_usual(value.at("order").line(), "chains"),
+                           unless_usual(math, "exact"), unless_usual(value.at(row_key::order).line(), "chains"),
                            unless_usual(schedule, "tiles"), ray_order ? unless_usual(ray_order->line(), "tiles") : "");
 }
 
@@ -145,8 +143,8 @@ std::vector<ReportRow> report_rows(const ResultFile& result, std::size_t file)
         if (const auto launches = result.rows[i].in_flight; launches > 1)
             row.api += fmt::format(", {} in flight", launches);
         row.device = result.head.shown(result.rows[i].device);
-        read_into(row.rays, items[i].at("rays"));
-        if (const auto task = items[i].find("task")) {
+        read_into(row.rays, items[i].at(row_key::rays));
+        if (const auto task = items[i].find(row_key::task)) {
             read_into(row.task, *task);
             if (!traits_of(row.task).crosses) task->reject("is not a task that rows name");
         }

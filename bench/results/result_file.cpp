@@ -1,6 +1,7 @@
 #include "bench/results/result_file.h"
 
 #include "bench/results/json_file.h"
+#include "bench/results/row_keys.h"
 #include "core/base/error.h"
 #include "core/base/printable.h"
 
@@ -79,8 +80,7 @@ ResultScene read_scene(const ResultValue& value)
 std::vector<double> read_samples(const ResultValue& row)
 {
     std::vector<double> samples;
-    const auto times = row.find("times");
-    const auto array = times ? times->find("samples_s") : std::nullopt;
+    const auto array = row.find(row_key::samples_s);
     if (!array) return samples;
     for (const ResultValue& sample : array->items())
         samples.push_back(duration(sample));
@@ -90,8 +90,8 @@ std::vector<double> read_samples(const ResultValue& row)
 /// Results from before the key have it only in the row's name, if it is not tiles: "/schedule:packets/".
 std::string read_schedule(const ResultValue& row)
 {
-    if (const auto schedule = row.find("schedule")) return schedule->line();
-    const std::string name = row.at("name").line();
+    if (const auto schedule = row.find(row_key::schedule)) return schedule->line();
+    const std::string name = row.at(row_key::name).line();
     constexpr std::string_view part = "/schedule:";
     const std::size_t place = name.find(part);
     if (place == std::string::npos) return "tiles";
@@ -103,38 +103,37 @@ std::string read_schedule(const ResultValue& row)
 ResultRow read_any_row(const ResultValue& value)
 {
     ResultRow row;
-    row.name = value.at("name").line();
-    if (row.name.size() > longest_name) value.at("name").reject("is longer than 1,000 bytes, which no row's name is");
-    row.backend = value.at("backend").line();
+    row.name = value.at(row_key::name).line();
+    if (row.name.size() > longest_name)
+        value.at(row_key::name).reject("is longer than 1,000 bytes, which no row's name is");
+    row.backend = value.at(row_key::backend).line();
     row.schedule = read_schedule(value);
-    read_into(row.status, value.at("status"));
-    if (const auto reason = value.find("reason")) row.reason = printable_text(reason->text());
-    if (const auto device = value.find("device")) {
+    read_into(row.status, value.at(row_key::status));
+    if (const auto reason = value.find(row_key::reason)) row.reason = printable_text(reason->text());
+    if (const auto device = value.find(row_key::device)) {
         row.device = device->at("name").line();
         row.device_kind = device_kind_of(*device);
         row.driver = line_or_nothing(*device, "driver");
-        if (const auto index = value.find("device_index")) row.device_index = index->count();
+        if (const auto index = value.find(row_key::device_index)) row.device_index = index->count();
     }
-    if (const auto threads = value.find("threads")) row.threads = count_up_to(max_threads, *threads);
-    if (const auto launches = value.find("launches_in_flight")) row.in_flight = count_up_to(max_in_flight, *launches);
+    if (const auto threads = value.find(row_key::threads)) row.threads = count_up_to(max_threads, *threads);
+    if (const auto launches = value.find(row_key::launches_in_flight))
+        row.in_flight = count_up_to(max_in_flight, *launches);
     row.samples_s = read_samples(value);
-    if (const auto times = value.find("times")) {
-        if (const auto pulse = times->find("pulse")) row.pulse_ratio = pulse->number();
-        if (const auto launches = times->find("launches")) row.launches = launches->count();
-        if (const auto noisy = times->find("noisy")) row.noisy = noisy->flag();
-    }
+    if (const auto pulse = value.find(row_key::pulse)) row.pulse_ratio = pulse->number();
+    if (const auto launches = value.find(row_key::launches)) row.launches = launches->count();
+    if (const auto noisy = value.find(row_key::noisy)) row.noisy = noisy->flag();
     return row;
 }
 
 ResultRow read_row(const ResultValue& value)
 {
     ResultRow row = read_any_row(value);
-    row.scene = value.at("scene").line();
+    row.scene = value.at(row_key::scene).line();
     row.structure = row.name.substr(0, row.name.find('/'));
-    if (const auto hash = value.find("hit_hash")) row.hit_hash = hash->hash();
-    if (const auto hash = value.find("views_hash")) row.views_hash = hash->hash();
-    if (const auto rates = value.find("rates"))
-        if (const auto rate = rates->find("mrays_per_s")) row.mrays_per_s = rate->number();
+    if (const auto hash = value.find(row_key::hit_hash)) row.hit_hash = hash->hash();
+    if (const auto hash = value.find(row_key::views_hash)) row.views_hash = hash->hash();
+    if (const auto rate = value.find(row_key::mrays_per_s)) row.mrays_per_s = rate->number();
     return row;
 }
 

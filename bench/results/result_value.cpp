@@ -94,6 +94,17 @@ ResultValue ResultValue::at(const std::string& key) const
     reject(fmt::format("has no '{}'", key));
 }
 
+ResultValue ResultValue::at(const RowPath& path) const
+{
+    return *path.group == '\0' ? at(path.key) : at(path.group).at(path.key);
+}
+
+std::optional<ResultValue> ResultValue::find(const RowPath& path) const
+{
+    const auto object = *path.group == '\0' ? std::optional(*this) : find(path.group);
+    return object ? object->find(path.key) : std::nullopt;
+}
+
 std::vector<ResultValue> ResultValue::items() const
 {
     require(value_->is_array(), "an array");

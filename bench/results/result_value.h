@@ -23,6 +23,13 @@ namespace tetrace {
 /// bytes for results with many samples or points.
 [[nodiscard]] std::string result_text(const nlohmann::json& value);
 
+/// Where a row of a result has a field: its key, in the object that `group` names or, if that is empty, in the row
+/// itself.
+struct RowPath {
+    const char* group; ///< such as "times"
+    const char* key;
+};
+
 /// A value of a result file that knows its place in it. A request that the value does not meet throws
 /// Error{invalid_input} naming the file and the key, for example "a.json: tetrace.rows[3].times.samples_s: ...".
 /// Refers to the JSON that it was made of, which has to outlive it.
@@ -36,6 +43,8 @@ public:
 
     [[nodiscard]] ResultValue at(const std::string& key) const;                     ///< of an object that has the key
     [[nodiscard]] std::optional<ResultValue> find(const std::string& key) const;    ///< of an object that may have it
+    [[nodiscard]] ResultValue at(const RowPath& path) const;                        ///< of a row that has the field
+    [[nodiscard]] std::optional<ResultValue> find(const RowPath& path) const;       ///< of a row that may have it
     [[nodiscard]] std::vector<ResultValue> items() const;                           ///< of an array
     [[nodiscard]] std::vector<std::pair<std::string, ResultValue>> members() const; ///< of an object
 

@@ -1,6 +1,7 @@
 #include "bench/results/work_recipe.h"
 
 #include "bench/options/option_values.h"
+#include "bench/results/row_keys.h"
 #include "bench/terminal/text.h"
 #include "core/base/printable.h"
 #include "core/rays/camera_set.h"
@@ -80,14 +81,14 @@ void add_rays(WorkRecipe& recipe, const ResultScene& a, const ResultScene& b)
     if (a.width != b.width || a.height != b.height) add(recipe, "--size", fmt::format("{}x{}", a.width, a.height));
 }
 
-/// The values of that key in the rows that have times.
-std::set<std::string> values_of(const ResultFile& file, const char* key)
+/// The values of that field in the rows that have times.
+std::set<std::string> values_of(const ResultFile& file, const RowPath& field)
 {
     std::set<std::string> values;
     const ResultValue section = file.section();
     const std::vector<ResultValue> rows = section.at("rows").items();
     for (std::size_t i = 0; i < rows.size(); ++i)
-        if (const auto value = rows[i].find(key); value && !file.rows[i].samples_s.empty())
+        if (const auto value = rows[i].find(field); value && !file.rows[i].samples_s.empty())
             values.insert(value->line());
     return values;
 }
@@ -131,11 +132,12 @@ std::string rows_recipe(const ResultFile& a, const ResultFile& b)
     if (a.head.verb != "bench")
         return a.head.verb == b.head.verb ? "" : fmt::format("measure B with 'tetrace {}'", a.head.verb);
     WorkRecipe recipe;
-    for (const char* const key : {"scene", "rays", "math", "order", "layout", "method", "backend"}) {
-        std::set<std::string> values = values_of(a, key);
-        if (std::string_view(key) == "scene") values = scenes_for(b, a, values);
-        if (!std::ranges::includes(values_of(b, key), values))
-            add(recipe, fmt::format("--{}", key), fmt::format("{}", fmt::join(values, ",")));
+    for (const RowPath& field : {row_key::scene, row_key::rays, row_key::math, row_key::order, row_key::layout,
+                                 row_key::method, row_key::backend}) {
+        std::set<std::string> values = values_of(a, field);
+        if (field.key == std::string_view(row_key::scene.key)) values = scenes_for(b, a, values);
+        if (!std::ranges::includes(values_of(b, field), values))
+            add(recipe, fmt::format("--{}", field.key), fmt::format("{}", fmt::join(values, ",")));
     }
     return recipe.text();
 }

@@ -4,6 +4,7 @@
 #include "bench/output/device_json.h"
 #include "bench/output/row_fields.h"
 #include "bench/output/trust.h"
+#include "bench/results/row_keys.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,10 +19,9 @@ Outcome outcome_from(const ResultValue& value, const ResultRow& row)
     if (row.status == Status::skipped) return Skipped{Status::skipped, row.reason};
     if (row.status == Status::unsupported) return Skipped{Status::unsupported, row.reason};
     if (row.status == Status::error) return Failed{ErrorKind::internal, row.reason};
-    const auto verification = value.find("verification");
-    const auto different = verification ? verification->find("different_from_openmp") : std::nullopt;
+    const auto different = value.find(row_key::different_from_openmp);
     const bool is_different = different && different->count() > 0;
-    if (!value.find("counts") || (row.status == Status::wrong && !is_different))
+    if (!value.find(row_key::counts) || (row.status == Status::wrong && !is_different))
         return Failed{ErrorKind::wrong_result, row.reason};
     return Traced{};
 }
@@ -32,7 +32,7 @@ void read_fields(RowRecord& record, const ResultValue& value, bool with_answers 
     for (const RowField& field : row_fields()) {
         if (field.schema == nullptr) continue;
         const bool is_grouped = *field.group != '\0';
-        if (!with_answers && field.group == std::string_view("verification")) continue;
+        if (!with_answers && field.group == std::string_view(row_key::verification.key)) continue;
         const auto object = is_grouped ? value.find(field.group) : std::optional(value);
         if (!object) continue;
         if (const auto found = object->find(field.key))
@@ -43,11 +43,9 @@ void read_fields(RowRecord& record, const ResultValue& value, bool with_answers 
 }
 
 /// From a mean that was recorded with all its digits.
-std::uint64_t steps_of(const ResultValue& counts, const char* mean, std::uint64_t rays)
+std::uint64_t steps_of(const std::optional<ResultValue>& mean, std::uint64_t rays)
 {
-    double steps = 0;
-    read_member(steps, counts, mean);
-    steps *= static_cast<double>(rays);
+    const double steps = mean ? mean->number() * static_cast<double>(rays) : 0;
     return steps > 0 && steps < 1e18 ? static_cast<std::uint64_t>(std::llround(steps)) : 0;
 }
 
@@ -57,14 +55,15 @@ void read_older(RowRecord& record, const ResultValue& value)
     Traced* const result = std::get_if<Traced>(&record.outcome);
     if (result == nullptr) return;
     RayTotals& totals = result->totals;
-    const ResultValue counts = value.at("counts");
-    if (counts.find("steps") && !counts.find("hit_steps")) {
-        totals.hit_steps = steps_of(counts, "mean_steps_hit", totals.hits);
-        totals.miss_steps = steps_of(counts, "mean_steps_miss", totals.misses);
+    const auto steps = value.find(row_key::steps);
+    if (steps && !value.find(row_key::hit_steps)) {
+        totals.hit_steps = steps_of(value.find(row_key::mean_steps_hit), totals.hits);
+        totals.miss_steps = steps_of(value.find(row_key::mean_steps_miss), totals.misses);
         const std::uint64_t known = totals.hit_steps + totals.miss_steps;
-        totals.lost_steps = std::max(counts.at("steps").count(), known) - known;
+        totals.lost_steps = std::max(steps->count(), known) - known;
     }
-    if (value.text_at("conformity").starts_with("within"))
+    const auto conformity = value.find(row_key::conformity);
+    if (conformity && conformity->text().starts_with("within"))
         result->inexact = std::max<std::uint64_t>(result->inexact, 1);
 }
 
@@ -74,14 +73,16 @@ KernelId known_kernel(const KernelId& named, const ResultValue& row)
     const auto found = kernel_named(name_of(named.method), name_of(named.layout), name_of(named.math),
                                     name_of(named.schedule), named.task);
     if (!found)
-        row.at("method").reject("and its layout, math and schedule are not a kernel of this tetrace: use the one that "
-                                "wrote the file");
+        row.at(row_key::method)
+            .reject("and its layout, math and schedule are not a kernel of this tetrace: use the one that "
+                    "wrote the file");
     return *found;
 }
 
 void require_backend(const ResultValue& row)
 {
-    if (!is_known_api(row.at("backend").line())) row.at("backend").reject("is not a backend of this tetrace");
+    const ResultValue backend = row.at(row_key::backend);
+    if (!is_known_api(backend.line())) backend.reject("is not a backend of this tetrace");
 }
 
 RowRecord record_from(const ResultValue& value, const ResultRow& row)
@@ -107,7 +108,7 @@ RowRecord search_record_from(const ResultValue& value, const ResultRow& row)
 {
     RowRecord record;
     if (row.status == Status::skipped || row.status == Status::unsupported || row.status == Status::error ||
-        !value.find("verification"))
+        !value.find(row_key::verification))
         record.outcome = outcome_from(value, row);
     read_fields(record, value, false);
     RowKey& key = record.key;

@@ -81,7 +81,7 @@ Lines folded(const std::string& text, std::size_t width)
 }
 
 /// A column as it is printed: each cell in one line or more.
-struct Shown {
+struct ShownColumn {
     Lines title;
     std::string unit;
     std::vector<Lines> cells;
@@ -104,20 +104,20 @@ struct Shown {
     }
 };
 
-std::size_t width_of_all(const std::vector<Shown>& columns)
+std::size_t width_of_all(const std::vector<ShownColumn>& columns)
 {
     std::size_t width = columns.empty() ? 0 : gap.size() * (columns.size() - 1);
-    for (const Shown& column : columns)
+    for (const ShownColumn& column : columns)
         width += column.width();
     return width;
 }
 
 /// Makes columns that always stay narrower where they do not fit: first their titles, then the first column's cells.
-void fold_into(std::vector<Shown>& columns, std::size_t width)
+void fold_into(std::vector<ShownColumn>& columns, std::size_t width)
 {
     constexpr std::size_t least = 16;
     if (columns.empty() || width_of_all(columns) <= width) return;
-    for (Shown& column : columns)
+    for (ShownColumn& column : columns)
         column.title = folded(column.title.front(), std::max(column.cell_width(), least));
     const std::size_t all = width_of_all(columns), first = columns.front().width();
     if (all <= width) return;
@@ -127,10 +127,10 @@ void fold_into(std::vector<Shown>& columns, std::size_t width)
 }
 
 /// Parts that fit into the width, one below the other, each with the first column.
-std::vector<std::vector<Shown>> parts_of(const std::vector<Shown>& columns, std::size_t width)
+std::vector<std::vector<ShownColumn>> parts_of(const std::vector<ShownColumn>& columns, std::size_t width)
 {
-    std::vector<std::vector<Shown>> parts;
-    for (const Shown& column : columns | std::views::drop(1)) {
+    std::vector<std::vector<ShownColumn>> parts;
+    for (const ShownColumn& column : columns | std::views::drop(1)) {
         if (parts.empty() || width_of_all(parts.back()) + gap.size() + column.width() > width)
             parts.push_back({columns.front()});
         parts.back().push_back(column);
@@ -141,16 +141,16 @@ std::vector<std::vector<Shown>> parts_of(const std::vector<Shown>& columns, std:
 
 /// A line of the table, or the lines of its highest cell.
 template <class Cells>
-std::string lines_of(const std::vector<Shown>& columns, const std::string& margin, const Cells& cells_of,
+std::string lines_of(const std::vector<ShownColumn>& columns, const std::string& margin, const Cells& cells_of,
                      bool coloured = false)
 {
     std::size_t height = 1;
-    for (const Shown& column : columns)
+    for (const ShownColumn& column : columns)
         height = std::max(height, cells_of(column).size());
     std::string result;
     for (std::size_t i = 0; i < height; ++i) {
         std::string line = margin;
-        for (const Shown& column : columns) {
+        for (const ShownColumn& column : columns) {
             const Lines cell = cells_of(column);
             if (&column != &columns.front()) line.append(gap);
             line += padded(i < cell.size() ? cell[i] : "", column.width(), column.right, coloured && column.coloured);
@@ -264,24 +264,24 @@ Table Table::without_empty_columns() const
 
 std::string Table::text(std::size_t indent, std::size_t width) const
 {
-    std::vector<Shown> columns;
+    std::vector<ShownColumn> columns;
     for (const std::size_t c : fitting(indent, width)) {
-        Shown& shown = columns.emplace_back(Shown{{columns_[c].title}, columns_[c].unit, {}, is_number(c)});
+        ShownColumn& shown = columns.emplace_back(ShownColumn{{columns_[c].title}, columns_[c].unit, {}, is_number(c)});
         shown.coloured = columns_[c].coloured;
         for (const auto& row : rows_)
             shown.cells.push_back({cell_text(row[c], columns_[c])});
     }
     const std::string margin(indent, ' ');
-    const auto lines_with = [&](const std::vector<Shown>& part) {
-        std::string lines = lines_of(part, margin, [](const Shown& shown) { return shown.title; });
-        if (std::ranges::any_of(part, [](const Shown& shown) { return !shown.unit.empty(); }))
-            lines += lines_of(part, margin, [](const Shown& shown) { return Lines{shown.unit}; });
+    const auto lines_with = [&](const std::vector<ShownColumn>& part) {
+        std::string lines = lines_of(part, margin, [](const ShownColumn& shown) { return shown.title; });
+        if (std::ranges::any_of(part, [](const ShownColumn& shown) { return !shown.unit.empty(); }))
+            lines += lines_of(part, margin, [](const ShownColumn& shown) { return Lines{shown.unit}; });
         for (std::size_t r = 0; r < rows_.size(); ++r) {
             const auto [first, last] = headings_.equal_range(r);
             for (auto heading = first; heading != last; ++heading)
                 lines += without_trailing_blanks(margin + heading->second);
             lines += lines_of(
-                part, margin, [r](const Shown& shown) { return shown.cells[r]; }, true);
+                part, margin, [r](const ShownColumn& shown) { return shown.cells[r]; }, true);
         }
         return lines;
     };

@@ -251,7 +251,7 @@ TEST(CheckJudgement, of_segments_names_rows_that_there_are)
     EXPECT_EQ(names_of_no_row(shown.at(driver), reference_backend()), std::vector<std::string>());
     Expectation other = shown.at(driver);
     other.exceptions = {{"segments/project/tet80/shadow", Finding::wrong}};
-    EXPECT_EQ(names_of_no_row(other, reference_backend()).size(), 1u) << "segments have no end";
+    EXPECT_EQ(names_of_no_row(other, reference_backend()).size(), 1u) << "task segments lacks shadow rays";
 }
 
 TEST(CheckJudgement, of_wrong_rows_alone_expects_other_rows_to_conform)
@@ -327,7 +327,7 @@ TEST(Repetitions, that_differ_fail_with_their_rate_unless_they_are_known_flakes)
     EXPECT_EQ(verdict({good}, shown), "Conforms  1 row on 1 device.\n");
     EXPECT_EQ(verdict({bad}, shown), "Conforms  1 row on 1 device, 1 known flake.\n");
     const Rows other = {wrong(good_row(Method::maria, "banana"))};
-    EXPECT_EQ(exit_code(other, judge_rows(other, &shown, false)), 1) << "the flake is this row alone";
+    EXPECT_EQ(exit_code(other, judge_rows(other, &shown, false)), 1) << "the flake is another row";
 }
 
 TEST(Repetitions, with_other_bits_each_time_are_flakes_though_all_are_right)

@@ -1,4 +1,4 @@
-// The page is no bolder than the terminal: it begins with whether to trust the rates, and makes nothing of noisy ones.
+// The page claims no more than the terminal: it says first whether to trust the rates, and judges none that are noisy.
 #include "tests/output/report_fixture.h"
 
 #include <regex>

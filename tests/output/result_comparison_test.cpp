@@ -333,7 +333,7 @@ TEST_F(ResultComparisons, a_refusal_of_results_without_a_common_row_says_how_a_w
     const std::string options = error_of([&] { (void)compare(before, after); });
     EXPECT_TRUE(options.ends_with("; measure B with --rays shadow")) << options;
     before["tetrace"]["rows"].push_back(untimed_row("two", "skipped"));
-    EXPECT_EQ(error_of([&] { (void)compare(before, after); }), options) << "A has no rate of the row that they share";
+    EXPECT_EQ(error_of([&] { (void)compare(before, after); }), options) << "A lacks a rate of the row that they share";
     Json packed = before;
     packed["tetrace"]["scenes"][0]["hash"] = "02e9d84d743616a3"; // bunny-1
     EXPECT_TRUE(contains(error_of([&] { (void)compare(packed, after); }), "measure B with --scene bunny-1 --rays"));
