@@ -13,7 +13,7 @@ namespace {
 
 struct MacroRow {
     std::vector<std::string> macros;
-    std::vector<std::string> setters, readers; ///< names of files, where they are given: "bvh4.h", "walk_*.h"
+    std::vector<std::string> setters, readers; ///< files as the table names them: "bvh4.h", "walk_*.h"
 };
 
 std::vector<std::string> all_matches(const std::string& text, const std::regex& pattern)

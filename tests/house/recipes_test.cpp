@@ -62,7 +62,7 @@ std::string porting()
     return read_text(checkout / "core/device/PORTING.md");
 }
 
-/// What the first group of a pattern matches, each time; the whole match if the pattern has no group.
+/// What the first group of a pattern matches, each time; the whole match if the pattern lacks groups.
 std::vector<std::string> all_of(const std::string& text, const std::string& pattern)
 {
     const std::regex regex(pattern);
@@ -87,7 +87,7 @@ Names virtuals_of(const std::string& name, bool must_be_written)
     return names;
 }
 
-/// The suites of the program <name>_tests; none if there is no such program.
+/// The suites of the program <name>_tests; none if that program does not exist.
 Names suites_of(const std::string& name)
 {
     Names suites;
@@ -105,16 +105,16 @@ std::vector<std::string> missing_in_tree(const std::string& page)
 {
     std::vector<std::string> problems;
     for (const std::string& file : names_in(page, "\\b\\w+(?:/\\w+)+\\.\\w+"))
-        if (!fs::is_regular_file(checkout / file)) problems.push_back("there is no file " + file);
+        if (!fs::is_regular_file(checkout / file)) problems.push_back("missing file: " + file);
     for (const std::string& program : names_in(page, "\\b(\\w+)_tests?\\b"))
-        if (suites_of(program).empty()) problems.push_back("there is no program " + program + "_tests");
+        if (suites_of(program).empty()) problems.push_back("missing program: " + program + "_tests");
     const std::regex run("(\\w+)_tests --gtest_filter='([^']+)'");
     for (std::sregex_iterator match(page.begin(), page.end(), run), end; match != end; ++match) {
         const Names suites = suites_of(match->str(1));
         for (const std::string& filter : all_of(match->str(2), "(?:\\*/)?([^.:]+)(?:\\.[^:]*)?")) {
             const std::regex suite(std::regex_replace(filter, std::regex("\\*"), "\\w*"));
             if (std::ranges::none_of(suites, [&](const std::string& name) { return std::regex_match(name, suite); }))
-                problems.push_back(match->str(1) + "_tests has no suite " + filter);
+                problems.push_back(match->str(1) + "_tests lacks suite " + filter);
         }
     }
     return problems;
@@ -193,6 +193,6 @@ TEST(Porting, names_files_programs_and_suites_that_exist)
     EXPECT_EQ(joined(missing_in_tree(porting())), "");
     EXPECT_EQ(joined(missing_in_tree("`core/device/gone.h`, `backends_tests --gtest_filter='Launch*:*/Gone.*'`, "
                                      "build/release/bin/device_test, `gone_tests`")),
-              "there is no file core/device/gone.h\nthere is no program device_tests\nthere is no program gone_tests\n"
-              "backends_tests has no suite Gone\n");
+              "missing file: core/device/gone.h\nmissing program: device_tests\nmissing program: gone_tests\n"
+              "backends_tests lacks suite Gone\n");
 }
