@@ -406,7 +406,7 @@ void read_mesh_only(const fs::path& mesh, const fs::path& out, const std::string
 std::vector<TetsAttempt> fallback_attempts(const BuildOptions& options)
 {
     if (options.switches != default_build(options.tets).switches) return {};
-    constexpr std::uint32_t first_orders = 8, orders_of_welds = 10, orders_of_quality = 5, orders_of_squares = 4,
+    constexpr std::uint32_t first_orders = 5, orders_of_welds = 10, orders_of_quality = 5, orders_of_squares = 4,
                             all_orders = 32;
     const std::string careful = options.switches + "0/2/2", quality = default_build(TetsKind::cdt).switches;
     std::vector<TetsAttempt> all;
