@@ -7,7 +7,7 @@ first_layouts = half32,bvh2
 # QUICK=1: one scene, small images, under a minute once all is built.
 scenes = $(if $(QUICK),--scene bunny)
 
-.PHONY: help bench first test test-all sanitize sanitize-threads fuzz build bundle deb release cluster-test format lint clean
+.PHONY: help bench first kernels test test-all sanitize sanitize-threads fuzz build bundle deb release cluster-test format lint clean
 
 help:
 	@echo "make bench    install what is missing, build, run the main job; table, JSON, page, pictures (build/bench/);"
@@ -76,13 +76,22 @@ cluster-test: build
 	@scripts/install-packages cluster
 	scripts/cluster-test $(TETRACE) build/cluster
 
-# One test more than processors at a time: some wait for a limit to pass.
+# One test more than processors at a time: some wait for a limit to pass. A machine without CMake is a new one.
+test_settings = -DCMAKE_COMPILE_WARNING_AS_ERROR=$(if $(WERROR),ON,OFF)
 test test-all:
+	@command -v cmake >/dev/null || $(MAKE) kernels
 	@scripts/install-packages build test
-	cmake --preset release -G Ninja -DBUILD_TESTING=ON $(if $(filter test-all,$@),-DTETRACE_CUDA_CODE=all) -DCMAKE_COMPILE_WARNING_AS_ERROR=$(if $(WERROR),ON,OFF)
+	cmake --preset release -G Ninja -DBUILD_TESTING=ON $(if $(filter test-all,$@),-DTETRACE_CUDA_CODE=all) $(test_settings)
 	cmake --build --preset release -j $(JOBS)
 	ctest --preset release -j $$(($(JOBS) + 1)) $(if $(filter test,$@),-LE '^campaign$$') --output-log build/release/test.log; \
 	    status=$$?; echo "== release"; scripts/test-summary build/release; exit $$status
+
+# The kernels are compiled while the packages that they do not need arrive.
+kernels:
+	@scripts/install-packages first
+	cmake --preset release -G Ninja -DBUILD_TESTING=OFF $(test_settings)
+	scripts/install-packages build test & cmake --build --preset release -j $(JOBS) --target tetrace_backends; \
+	    status=$$?; wait; exit $$status
 
 sanitize:
 	@scripts/install-packages build test

@@ -12,6 +12,9 @@ add_library(tetrace_options INTERFACE)
 target_compile_features(tetrace_options INTERFACE cxx_std_20)
 target_include_directories(tetrace_options INTERFACE ${CMAKE_SOURCE_DIR})
 target_compile_options(tetrace_options INTERFACE -Wall -Wextra -Wconversion -Wshadow)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU") # it looks for garbage less often: a tenth less time for a sixth more memory
+  target_compile_options(tetrace_options INTERFACE "SHELL:--param ggc-min-heapsize=4000000")
+endif()
 if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU") # it takes a source that another one includes for a header
   target_compile_options(tetrace_options INTERFACE -Wno-subobject-linkage)
 endif()

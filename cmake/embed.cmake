@@ -9,7 +9,7 @@ foreach(entry IN LISTS FILES)
   file(SIZE "${CMAKE_MATCH_2}" length)
   string(APPEND rows "        {\"${CMAKE_MATCH_1}\", ${length}},\n")
 endforeach()
-execute_process(COMMAND ${CMAKE_COMMAND} -E cat ${files} COMMAND ${XZ} --lzma2=preset=9e,dict=8MiB --stdout
+execute_process(COMMAND ${CMAKE_COMMAND} -E cat ${files} COMMAND ${XZ} -6 --stdout
   OUTPUT_FILE ${OUTPUT}.xz COMMAND_ERROR_IS_FATAL ANY)
 file(SIZE ${OUTPUT}.xz length)
 file(WRITE ${OUTPUT} "// Written by CMake, see cmake/Kernels.cmake.

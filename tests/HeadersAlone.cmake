@@ -1,4 +1,4 @@
-# Each header of ours compiles alone. If a source of the same name includes its header first, building that
+# Each header of ours compiles by itself. If a source of the same name includes its header first, building that
 # shows it; the rest get a translation unit each, built with the tests. Of kernels/ that is layouts/layout.h; the others are parts
 # of a kernel's source in several languages, which every backend compiles, as those of backends/openmp/packet/ are parts of
 # one source for vectors of several widths.

@@ -1,4 +1,4 @@
-// What only CUDA has, without a GPU: that its two stand-ins, the host emulation and a library that poses as NVIDIA's
+// What only CUDA has, without a GPU: that its two substitutes, the host emulation and a library that poses as NVIDIA's
 // driver (tests/stub_cuda), say so; a driver's failures; NVRTC; the code that real GPUs get, which is looked at, not
 // run. device_test.cpp and the other tests of each_device.h have what is claimed of every API.
 #include "backends/cuda/driver_backend.h"

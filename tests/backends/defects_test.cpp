@@ -45,7 +45,7 @@ try {
     return std::nullopt;
 }
 
-/// Without anything expected where there is no file.
+/// Nothing is expected of an implementation without a file.
 Expectation expectation_of(const std::string& implementation)
 {
     const std::filesystem::path path = std::string(TETRACE_EXPECTED_FOLDER "/") + implementation + ".json";
@@ -160,7 +160,7 @@ TEST(Stressors, of_the_largest_buffer_have_one_that_the_device_and_its_memory_ad
     EXPECT_EQ(bytes_on(gib, 24 * gib), gib);
     EXPECT_EQ(bytes_on(4 * gib - 1, 24 * gib), 4 * gib - 4096) << "what Vulkan calls no limit";
     EXPECT_EQ(bytes_on(4 * gib - 1, 3 * gib), 3 * gib / 2);
-    EXPECT_EQ(bytes_on(0, 140 * gib), 16 * gib - 4096) << "more words have no number";
+    EXPECT_EQ(bytes_on(0, 140 * gib), 16 * gib - 4096) << "a word's number has 32 bits";
     Device processor;
     processor.kind = DeviceKind::cpu;
     processor.memory_bytes = 1024 * gib;

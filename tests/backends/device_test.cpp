@@ -1,5 +1,5 @@
-// On every device of every API that can be used here: it computes exactly in exact mode, and reports truly what it is,
-// what it has, and which limit a scene or an image exceeds. Hits, searches and sessions are in device_hits_test.cpp,
+// On every device of every API that can be used here: it computes exactly in exact mode, and correctly reports its
+// properties, and which limit a scene or an image exceeds. Hits, searches and sessions are in device_hits_test.cpp,
 // device_search_test.cpp and device_session_test.cpp; what only one API has is in its own test.
 #include "core/device/scene_buffers.h"
 #include "tests/backends/each_device.h"

@@ -1,4 +1,4 @@
-// What faulty_stressor.cpp reads besides the text of a fault, precompiled.
+// The headers of faulty_stressor.cpp, precompiled.
 #pragma once
 
 #include "core/device/backend.h"

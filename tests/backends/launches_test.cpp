@@ -176,7 +176,7 @@ TEST(Launches, of_jobs_that_fit_in_one_have_all_their_passes)
 
 namespace {
 
-/// What enqueue is told: of each pass in turn, the part of the output that each piece writes.
+/// The part of the output that each piece writes, for each pass in turn, as enqueue gets it.
 std::vector<std::vector<std::size_t>> parts_of_passes(Launches& launches, std::span<const LaunchParams> images,
                                                       std::uint32_t passes, std::uint32_t in_flight)
 {

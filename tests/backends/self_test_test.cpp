@@ -82,7 +82,7 @@ TEST(SelfTest, a_build_that_reassociates_is_not_exact)
 TEST(SelfTest, an_opencl_compiler_that_may_reassociate_is_not_exact)
 {
     Backend* const opencl = find_backend("opencl");
-    if (opencl == nullptr || !opencl->devices().front().usable) GTEST_SKIP() << "there is no OpenCL device here";
+    if (opencl == nullptr || !opencl->devices().front().usable) GTEST_SKIP() << "an OpenCL device is missing";
     const SelfTest test = judge_self_test(opencl->probe(0, MathMode::fast, self_test_operations()));
     if (!opencl->devices().front().implementation.starts_with("pocl-3.1")) GTEST_SKIP() << test.text();
     EXPECT_TRUE(test.reassociates) << test.text();

@@ -75,7 +75,7 @@ TEST_F(ControlGroupsOf, strictest_limit_up_the_path_counts_in_version_2)
     EXPECT_EQ(groups().threads(), 1u);
     EXPECT_EQ(groups().memory_bytes(), 1000u);
     EXPECT_EQ(groups().free_memory_bytes(), 400u) << "file caches are not counted as used";
-    EXPECT_EQ(groups().throttling().value().periods, 7u) << "pod has no quota";
+    EXPECT_EQ(groups().throttling().value().periods, 7u) << "pod lacks a quota";
     EXPECT_DOUBLE_EQ(groups().throttling().value().seconds, 1.5);
     write(sys_ + "kube/pod/box/cpu.max", "50000 100000\n");
     EXPECT_DOUBLE_EQ(groups().cpus().value(), 0.5);

@@ -119,7 +119,7 @@ TEST_F(Dump, of_a_variant_has_the_command_of_the_entry_point)
     EXPECT_EQ(run("dump --backend vulkan --scene cubes --pixel 1,1 --entry tally --out out " + variant).code, 2);
     EXPECT_EQ(run("dump --backend vulkan --layout bvh2 --variant difference_of.3/guard --entry tally --out out").code,
               2)
-        << "a BVH has no such task";
+        << "BVHs lack this task";
     const auto expect_option = [&](const std::string& backend, const std::string& file, const std::string& entry,
                                    const std::string& option) {
         if (!dumps(backend, variant + entry)) return;

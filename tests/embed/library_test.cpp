@@ -285,7 +285,7 @@ TEST_F(Library, says_what_is_wrong_and_writes_no_hit)
     EXPECT_EQ(refused({{0, 0, 0}, 0, {1, 0, 0}, NAN}), "tracing: ray 1: its t_max is not a number");
     EXPECT_TRUE(contains(refused({{0, 0, 0}, 0, {1, 0, 0}, 1}, 2), "flags are 0 or TETRACE_ANY_HIT"));
     EXPECT_EQ(tetrace_trace(tracer.get(), nullptr, 1, 0, nullptr), TETRACE_USAGE);
-    EXPECT_EQ(tetrace_trace(tracer.get(), nullptr, 0, 0, nullptr), TETRACE_OK) << "no rays have no hits";
+    EXPECT_EQ(tetrace_trace(tracer.get(), nullptr, 0, 0, nullptr), TETRACE_OK) << "without rays nothing is written";
 }
 
 TEST_F(Library, tells_bounds_in_the_mesh_s_coordinates)

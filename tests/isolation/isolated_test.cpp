@@ -322,7 +322,7 @@ TEST_F(Hung, driver_is_ended_at_its_limit_and_other_sessions_go_on)
 
 TEST_F(Hung, driver_that_compiles_is_charged_its_processor_time)
 {
-    EXPECT_EQ(use(*open("open work"), 1).size(), use(*open(""), 1).size()) << "0.8 s of work is no hang";
+    EXPECT_EQ(use(*open("open work"), 1).size(), use(*open(""), 1).size()) << "0.8 s of work is not a hang";
     EXPECT_TRUE(contains(error_of([&] { use(*open("open spin"), 1); }),
                          "gave no answer for 1.2 s of processor time, and was ended, while opening"));
     EXPECT_TRUE(contains(error_of([&] { use(*open("launch spin"), 1); }),

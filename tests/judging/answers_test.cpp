@@ -112,7 +112,7 @@ std::optional<std::uint32_t> false_face(const Judged& judged, const MeshRay& ray
     return faces.empty() ? std::nullopt : std::optional(faces[number % faces.size()]);
 }
 
-/// Nothing if the ray has no such answer.
+/// Nothing if the ray cannot have such an answer.
 std::optional<MeshAnswer> falsified(const Judged& judged, const MeshRay& ray, Falsified kind, std::uint32_t number)
 {
     const auto nearest = judged.search.nearest(ray);
@@ -228,7 +228,7 @@ TEST(Answers, have_one_verdict_each)
         {to_end, first, AnswerVerdict::right},
         {on_edge, {0, 1, 0, 0.5}, AnswerVerdict::tie},
         {on_edge, {1, 1, 0.5, 0}, AnswerVerdict::tie},
-        {on_edge, {2, 1, 0.5, 0}, AnswerVerdict::wrong}, // it has no area
+        {on_edge, {2, 1, 0.5, 0}, AnswerVerdict::wrong}, // a triangle without area
         {on_edge, miss, AnswerVerdict::missed},
         {beside, miss, AnswerVerdict::right},
         {beside, first, AnswerVerdict::invented},
@@ -277,7 +277,7 @@ TEST(Answers, are_near_an_edge_where_the_choice_of_a_triangle_is)
         mesh.vertices.insert(mesh.vertices.end(), {{x, 0, z}, {x, 1, z}, {x, 1, z + 0.25f}});
         mesh.triangles.push_back({first, first + 1, first + 2});
     };
-    for (const auto& [x, z] : {std::pair{0.75f, 0.5f}, {100.0f, 0.5f}, {0.75f, 5.0f}}) // 3: passed, 4: far, 5: behind
+    for (const auto& [x, z] : {std::pair{0.75f, 0.5f}, {100.0f, 0.5f}, {0.75f, 5.0f}}) // 3: passed, 4: far, 5: at t < 0
         add_upright(x, z);
     const Judged judged(mesh);
     const MeshRay inside{{0.75, 0.25, 1}, {0, 0, -1}, 0, no_end}, on_edge{{0.5, 0.5, 1}, {0, 0, -1}, 0, no_end},

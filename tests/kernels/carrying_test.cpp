@@ -1,6 +1,6 @@
-// Method project has the same bits where a walk carries the vertices of its face, on half32 and on tets that share
-// their vertices, as on tets that hold them: on every device, also where rays pass vertices and edges and where a walk
-// begins by following its path from the boundary.
+// Method project has the same bits whether a walk carries the vertices of its face, on half32 and on tets that share
+// their vertices, or loads them from tets that hold them: on every device, even if rays pass vertices and edges, and if
+// a walk begins by following its path from the boundary.
 #include "core/base/exact.h"
 #include "core/device/backend.h"
 #include "core/device/scene_buffers.h"

@@ -4,9 +4,9 @@
 //
 // Each ray: the answer of the kernel is that of the walk that its noting build notes; it is not lost; each tet is a
 // neighbour of the one before, and none comes twice; a line from outside begins and any ray ends at the boundary of the
-// domain. Its length, and how many faces come out of order, are those of the walk's places. The sums of the tets are,
-// as integers, those of the walks and of the answers. One batch in TETRACE_HARD_SHARE, and the first, is also judged by
-// the oracle (docs/spec/volume.md, S7).
+// domain. Its length, and how many faces are in the wrong order, are those of the walk's places. The sums of the tets
+// are, as integers, those of the walks and of the answers. One batch in TETRACE_HARD_SHARE, and the first, is also
+// judged by the oracle (docs/spec/volume.md, S7).
 #include "bench/truth/tally.h"
 #include "core/base/stopwatch.h"
 #include "scenes/export_tets.h"
@@ -73,7 +73,7 @@ private:
                 return across != NO_HALF_FACE && half_face_tet(across) == number;
             };
             if (i > 0 && std::ranges::none_of(tet(walk.tets[i - 1]).neighbours, leads_here))
-                return "one of its tets is no neighbour of the tet before";
+                return "one of its tets is not a neighbour of the tet before";
         }
         return nullptr;
     }

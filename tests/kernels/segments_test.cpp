@@ -34,7 +34,7 @@ struct CrossedRays {
     std::uint64_t reversed = 0, crossings = 0;
 };
 
-/// Hard rays; for maria the chords alone, in general position: others lead it astray in circles and past faces.
+/// Hard rays; for maria only the chords, in general position: others lead it astray in circles and past faces.
 RaySet rays_for(Method method, const Scene& scene, std::uint64_t first, std::size_t count)
 {
     RaySet set = hard_ray_set(scene, first, count);
@@ -254,7 +254,7 @@ TEST(Places, are_the_same_for_every_order_of_the_corners)
     EXPECT_GT(on_lines, 100u);
 }
 
-// Thin triangles, and rays beside them: the place is where the foot on the long edge is, or at its end.
+// Rays next to thin triangles: the place is that of the foot on the long edge, or of its end.
 TEST(Places, are_nearest_where_a_ray_passes_outside)
 {
     Random random(47);

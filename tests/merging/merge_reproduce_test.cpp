@@ -66,7 +66,7 @@ TEST_F(MergeReproduce, rows_of_several_machines_keep_counts_and_lose_rates)
     const std::string files = shards(command, 2);
     ASSERT_EQ(run("merge " + files + "--out one.json").code, 0);
     EXPECT_TRUE(section("one.json")["rows"][0].contains("rates"));
-    EXPECT_GT(section("one.json")["rows"][0]["times"]["passes"], 1) << "a view takes microseconds";
+    EXPECT_GT(section("one.json")["rows"][0]["times"]["passes"], 1) << "tracing one view takes microseconds";
     change("2.json", [](Json& section) { section["label"] = "another"; });
     const Ended ended = run("merge " + files + "--out all.json");
     ASSERT_EQ(ended.code, 0) << ended.errors;

@@ -121,7 +121,7 @@ TEST(HitLayers, name_the_triangles_of_the_meshs_file)
     if (find_builder().empty()) GTEST_SKIP() << "the builder was not built";
     const TemporaryFolder folder;
     write_file(folder / "own.off",
-               "OFF\n4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 0 1\n3 0 1 2\n3 0 2 3\n"); // the first has no area
+               "OFF\n4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 0 1\n3 0 1 2\n3 0 2 3\n"); // the first is without area
     const std::string path = folder / "hits.exr";
     const Options options = parse_options({"render", "--scene", folder / "own.off", "--effort", "0", "--size", "16",
                                            "--views", "0", "--backend", "openmp", "--picture", "hits", "--out", path});

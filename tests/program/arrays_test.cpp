@@ -9,7 +9,7 @@ using namespace tetrace::test;
 
 namespace {
 
-/// The columns of a .npy file of records, as they are in the file.
+/// The columns of a .npy file of records, by the names in its header.
 class Records {
 public:
     explicit Records(std::string bytes) : bytes_(std::move(bytes))

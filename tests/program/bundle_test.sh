@@ -26,7 +26,7 @@ brings_every_library_but_the_systems)
     bare "$folder/the bundle/bin/tetrace" --version || fail "it does not start by itself"
     [ ! -e "$folder/the bundle/scenes/banana.tet" ] || bare "$folder/the bundle/bin/tetrace" build --scene \
         "$folder/the bundle/scenes/banana-rays.tet" --views 0 --size 64 --format json | grep -q '"tets_kind": *"rays"' ||
-        fail "banana-rays.tet has no tets for rays" ;;
+        fail "banana-rays.tet lacks tets for rays" ;;
 states_licences_and_the_c_library)
     grep -Eq 'glibc 2\.[0-9]+ or newer' "$bundle/README" || fail "README names no version of glibc"
     for library in "$bundle"/lib/*.so*; do

@@ -346,7 +346,7 @@ TEST_F(Compare, of_two_checks_names_what_became_wrong_what_became_right_and_what
     const Ended better = run("compare b.json a.json");
     EXPECT_EQ(better.code, 0) << better.out;
     EXPECT_TRUE(contains(unwrapped(better), row + " wrong: 12 rays bit-exact BECAME RIGHT")) << better.out;
-    EXPECT_EQ(run("compare b.json b.json").code, 0) << "what was wrong before is no regression";
+    EXPECT_EQ(run("compare b.json b.json").code, 0) << "what was wrong before is not a regression";
 
     after["tetrace"]["rows"].erase(others[0]);
     write("b.json", after);

@@ -170,7 +170,7 @@ class ResultSchema(unittest.TestCase):
         cls.all = {**checks, "bench": cls.bench, "check": cls.check, "compare": cls.compare, "several": several, "reproduce": reproduced(cls.bench),
                    "table5": fresh(["reproduce", "table5", "--searches", "20x8", "--samples", "3", "--sample-time", "0", "--method", "maria",
                                     "--layout", "tet80", "--backend", "openmp", "--threads", "1"]),
-                   "defects": fresh(["check", "--defects", "--stress"], (0, 1)),
+                   "defects": fresh(["check", "--defects", "--stress", "--backend", "openmp,vulkan,cuda,cuda-host"], (0, 1)),
                    "variants": fresh(["check", "--variants", "1", "--scene", "cubes", "--resolution", "3", "--size", "8", "--method", "maria", "--layout", "tet80",
                                      "--backend", "vulkan"], (0, 3)),
                    "trace": fresh(["trace", "--scene", "cubes", "--resolution", "3", "--size", "8", "--pixel", "4,4", "--backend", "openmp,cuda-host"]),
@@ -283,7 +283,7 @@ class ResultSchema(unittest.TestCase):
             for key in keys:
                 self.refuses(twin(self.all[verb], (key,), lambda parent, name: parent.pop(name)), f"{verb}: no {key}")
         self.refuses({}, "nothing")
-        self.refuses({**self.bench, "more": 1}, "a key beside tetrace")
+        self.refuses({**self.bench, "more": 1}, "a key next to tetrace")
 
 
 if __name__ == "__main__":

@@ -69,7 +69,7 @@ TEST_F(LadderRun, goes_on_after_the_scenes_of_its_journal)
                &earlier = of_id(before.at("tables"), "ladder").at("rows");
     for (std::size_t i = 0; i < 3; ++i) {
         EXPECT_EQ(rows_of(after, "lattice:4")[i].at("times"), rows_of(before, "lattice:4")[i].at("times"));
-        EXPECT_EQ(cells.at(i), earlier.at(i)) << "with its rays alone";
+        EXPECT_EQ(cells.at(i), earlier.at(i)) << "with what single rays cost";
     }
     const auto readings = after.at("pulses").at(0).at("readings");
     EXPECT_TRUE(std::ranges::is_sorted(readings)) << readings;
@@ -77,7 +77,7 @@ TEST_F(LadderRun, goes_on_after_the_scenes_of_its_journal)
     EXPECT_EQ(run(ladder + " --resume").code, 0);
     const auto again = result("r.json");
     for (std::size_t i = 0; i < 6; ++i)
-        EXPECT_EQ(again.at("rows").at(i).at("times"), after.at("rows")[i].at("times")) << "from the journal alone";
+        EXPECT_EQ(again.at("rows").at(i).at("times"), after.at("rows")[i].at("times")) << "only from the journal";
     for (const std::string part : {"/extra/costs/0", "/tetrace/samples_a_row", "/extra"}) {
         auto entries = entries_of(journal);
         entries.at(2) = entries[2].patch({{{"op", "remove"}, {"path", part}}});

@@ -53,7 +53,7 @@ TEST_F(RivalsRun, a_filter_leaves_rows_and_claims_about_the_others_are_not_testa
 {
     ASSERT_EQ(run(small + "--filter schedule:native --junit j.xml --out page.json").code, 0);
     const nlohmann::json page = result("page.json");
-    EXPECT_GT(rows_of(page, "schedule", "native"), 2u) << "forms that are rows of this verb alone";
+    EXPECT_GT(rows_of(page, "schedule", "native"), 2u) << "only this verb has rows of these forms";
     EXPECT_EQ(rows_of(page, "schedule", "native"), page.at("rows").size());
     const std::string claims = of_id(page.at("tables"), "rivals").at("claims").dump();
     EXPECT_NE(claims.find("--filter left out"), std::string::npos);

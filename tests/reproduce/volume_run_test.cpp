@@ -17,7 +17,7 @@ TEST_F(VolumeRun, compares_bits_and_sums_counts_lost_rays_and_tests_uniform_line
     const auto& volume = of_id(page.at("tables"), "volume");
     ASSERT_EQ(volume.at("rows").size(), 10u + 4 + 4) << "segments; tally and absorb";
     EXPECT_EQ(page.at("rows").size(), 2 * volume.at("rows").size() - 5)
-        << "packets and two methods in double are openmp's alone";
+        << "only openmp has packets and two methods in double";
     const auto number = [](const nlohmann::json& row, const char* key) {
         return row.at(key).at("value").get<double>();
     };

@@ -156,7 +156,7 @@ TEST_F(BudgetOfRows, of_rows_that_are_only_verified_counts_no_samples)
     expect_skipped(1);
 }
 
-// Rows of exit searches have no scene. The budget is a third of the run's.
+// Rows of exit searches do not belong to a scene. The budget is a third of the run's.
 TEST_F(BudgetOfRows, of_searches_skips_the_slowest_row_and_names_what_the_run_needs)
 {
     SearchRun searches =

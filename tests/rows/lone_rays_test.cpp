@@ -1,4 +1,4 @@
-// What a step costs a ray alone.
+// What a step costs if one ray is traced by itself.
 #include "bench/measuring/lone_rays.h"
 #include "bench/measuring/view_recorder.h"
 #include "tests/support/row_runs.h"
@@ -90,7 +90,7 @@ TEST_F(LoneRays, a_ray_with_another_hit_than_among_all_rays_ends_its_row)
     EXPECT_EQ(status_of(row), Status::error);
     EXPECT_NE(reason_of(row).find("another hit when it is traced alone"), std::string::npos) << reason_of(row);
     EXPECT_TRUE(costs.alone_s.empty());
-    EXPECT_EQ(costs.steps, 0) << "a row without an answer has no costs";
+    EXPECT_EQ(costs.steps, 0) << "only rows with answers have costs";
 }
 
 TEST(LoneRay, costs_the_slope_per_step_whatever_a_launch_costs_and_some_launches_were_disturbed)

@@ -257,7 +257,7 @@ TEST_F(Measure, a_sample_lasts_as_long_as_asked_for_by_passes_that_are_one_launc
     ASSERT_EQ(status_of(row), Status::ok) << reason_of(row);
     EXPECT_EQ(row.passes, 20u) << "of a millisecond; at first 13, by the two of the warm-up, for a device whose clocks "
                                   "rise by a quarter";
-    // Two views to warm up; for each sample a pass of each view, all of them, and a launch for each view.
+    // Two views to warm up. For every sample: a pass of each view, all of them, and a launch for each view.
     EXPECT_EQ(std::ranges::count(launches, 1u, &SeenLaunch::passes), 2 + 3 * (1 + 2));
     EXPECT_EQ(std::ranges::count(launches, 20u, &SeenLaunch::passes), 2);
     EXPECT_EQ(launches.size(), 2u + 3 * (1 + 1 + 2));

@@ -33,7 +33,7 @@ bool hits(Double3 origin, Double3 ray, Double3 a, Double3 b, Double3 c)
     return u >= 0 && v >= 0 && u + v <= 1 && dot(ac, q) / determinant > 0;
 }
 
-/// The share of a view's rays that hit a triangle, by trying all.
+/// The share of a view's rays that hit the mesh: each ray is tested with all triangles.
 double hit_share(const TriangleMesh& mesh, const View& view)
 {
     std::size_t hit = 0;

@@ -174,7 +174,7 @@ TEST_F(Gltf, reads_buffers_in_files_of_the_same_folder)
     EXPECT_TRUE(contains(refusal_beside("sub"), "cannot be read"));
     EXPECT_TRUE(contains(refusal_beside("short.bin"), "buffer 0 has 71 bytes, not 72"));
     EXPECT_TRUE(contains(refusal(json("my%20box+1.bin"), "a.gltf"), "is not a file of the same folder"))
-        << "bytes alone have no folder";
+        << "bytes in memory are in no folder";
     // A buffer that no triangle needs may be missing.
     write_file(folder / "a.gltf",
                replaced(json("short.bin"), R"("buffers":[)", R"("buffers":[{"byteLength":9,"uri":"none.bin"},)"));
@@ -257,7 +257,7 @@ TEST_F(Gltf, honours_extensions_of_nodes)
 
 TEST_F(Gltf, reads_draco_or_names_its_package)
 {
-    // The same tetrahedron by draco_encoder, as the only buffer view; and with plain accessors beside it.
+    // The same tetrahedron by draco_encoder, as the only buffer view; and together with plain accessors.
     const std::string draco = tetrahedron_draco();
     const std::string use =
         R"("extensions":{"KHR_draco_mesh_compression":{"bufferView":0,"attributes":{"POSITION":0}}},)";

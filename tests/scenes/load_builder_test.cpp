@@ -310,7 +310,7 @@ TEST_F(Load, tries_all_other_ways_and_says_how_many_where_none_helps)
     EXPECT_EQ(fallback_attempts(rays).at(1), (TetsAttempt{"pYT1e-13O0"}));
     EXPECT_TRUE(std::ranges::any_of(fallback_attempts(rays), [&](const TetsAttempt& attempt) {
         return is_welded(attempt) && attempt.switches == "pq5Y0/2/2";
-    })) << "some meshes have tets by the CDT's switches alone";
+    })) << "some meshes get tets only by the CDT's switches";
     EXPECT_TRUE(std::ranges::count(fallback_attempts(rays), TetsAttempt{"p", 2}))
         << "others by a plain CDT in some order";
     const auto order = fallback_attempts(rays);

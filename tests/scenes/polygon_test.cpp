@@ -159,7 +159,7 @@ TEST(Polygon, that_crosses_itself_or_has_no_area_is_reported)
     const CutPolygon line = cut_polygon(Points{{0, 0, 0}, {0, 0, 0}, {1, 0, 1}, {2, 0, 2}, {-1, 0, -1}});
     EXPECT_TRUE(line.is_simple);
     EXPECT_EQ(line.triangles.size(), 3u);
-    // Both halves of the second are as large, and go round the opposite way.
+    // The two halves of the second are equally large, and of opposite orientation.
     for (const std::string last : {"0 1 0", "0 2 0"}) {
         const MeshSoup soup = parse_mesh("a.obj", "v 0 0 0\nv 2 2 0\nv 2 0 0\nv " + last + "\nf 1 2 3 4\n");
         EXPECT_EQ(soup.mesh.triangles.size(), 2u);

@@ -316,7 +316,7 @@ TriangleMesh leaves(std::uint64_t seed, std::uint32_t count, std::uint32_t rows)
 
 } // namespace
 
-// Cuts alone, and welding all, make ever more slivers of these.
+// Only cutting these, or welding all of them, makes ever more slivers.
 TEST(Repair, welds_only_what_still_crosses_after_cuts)
 {
     std::size_t welded = 0;
@@ -398,7 +398,7 @@ TEST(Repair, welds_a_vertex_to_the_edge_that_it_nearly_touches)
                             {{0, 1, 2}, {3, 4, 5}}};
     Scene scene = scene_of(mesh);
     repair(scene, weld_tolerances.front());
-    EXPECT_EQ(scene.mesh.triangles.size(), 3u) << "the triangle beside it is cut there";
+    EXPECT_EQ(scene.mesh.triangles.size(), 3u) << "the neighbouring triangle is cut there";
     EXPECT_EQ(scene.mesh.vertices.size(), 6u);
     EXPECT_EQ(scene.origins, (std::vector<std::uint32_t>{0, 0, 1}));
 }

@@ -1,4 +1,4 @@
-// Files of tets: read alike from every format, refused by line and number, and kept as they are in a scene.
+// Files of tets: read alike from every format, refused by line and number, and unchanged in a scene.
 #include "scenes/builder/own_tets.h"
 #include "scenes/builder/run_tetgen.h"
 #include "scenes/export_tets.h"

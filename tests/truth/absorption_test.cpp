@@ -19,7 +19,7 @@ using namespace tetrace::test;
 
 namespace {
 
-/// Hard rays; for maria the chords alone, in general position.
+/// Hard rays; for maria only the chords, in general position.
 RaySet rays_for(Method method, const Scene& scene, std::size_t count)
 {
     RaySet set = hard_ray_set(scene, 0, count);

@@ -73,10 +73,9 @@ enum class Mistake { left_out, twice, exchanged, appended, ends_early, begins_la
 constexpr std::array<const char*, 7> mistakes = {"left out",   "twice",       "exchanged",          "appended",
                                                  "ends early", "begins late", "leaves by its entry"};
 
-using Walk = CrossedTets;
-
 /// The walk with a mistake at a tet; empty if it cannot be made there.
-std::optional<Walk> falsified(const Scene& scene, const CrossedScene& tets, Walk walk, Mistake mistake, std::size_t i)
+std::optional<CrossedTets> falsified(const Scene& scene, const CrossedScene& tets, CrossedTets walk, Mistake mistake,
+                                     std::size_t i)
 {
     const auto place = static_cast<std::ptrdiff_t>(i);
     switch (mistake) {
@@ -116,7 +115,7 @@ std::optional<Walk> falsified(const Scene& scene, const CrossedScene& tets, Walk
     return walk.tets.empty() ? std::nullopt : std::optional(walk);
 }
 
-bool is_accepted(const CrossedScene& tets, const RaySet& one, const Segments& answer, const Walk& walk)
+bool is_accepted(const CrossedScene& tets, const RaySet& one, const Segments& answer, const CrossedTets& walk)
 {
     return tets.judged(one, {as_hit(answer)}, {walk}).clean();
 }
@@ -200,7 +199,7 @@ TEST(Crossings, a_changed_bit_of_an_answer_or_a_moved_place_is_caught)
             }
         const auto far = static_cast<std::uint32_t>(tie_bound(all.rays[i].origin) * 64 * (1u << LENGTH_BITS));
         for (std::size_t k = 0; k < walks[i].places.size(); ++k) {
-            Walk other = walks[i];
+            CrossedTets other = walks[i];
             other.places[k] += far;
             ++moved;
             caught += is_accepted(tets, one, summary_of(other), other) ? 0 : 1;

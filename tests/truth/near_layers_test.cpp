@@ -1,6 +1,6 @@
 // Two layers of triangles within some units in the last place of each other: each BVH must return the nearer one, as
-// exact arithmetic says. TETRACE_CAMPAIGN is how many pairs of each kind are made; with it, the counts are printed,
-// those of walks, Embree and drivers beside them.
+// exact arithmetic says. TETRACE_CAMPAIGN is how many pairs of each kind are made; with it, the counts are printed
+// next to those of walks, Embree and drivers.
 #include "backends/embree/backend.h"
 #include "backends/openmp/backend.h"
 #include "backends/vulkan/backend.h"

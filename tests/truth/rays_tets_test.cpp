@@ -114,9 +114,9 @@ struct SceneDifferences {
     std::string first; ///< of the wrong ones
 };
 
-class Comparison {
+class TetsComparison {
 public:
-    explicit Comparison(const TriangleMesh& mesh) : search_(mesh), settler_(mesh, search_) {}
+    explicit TetsComparison(const TriangleMesh& mesh) : search_(mesh), settler_(mesh, search_) {}
 
     void add(SceneDifferences& found, const ExactRay& ray, const Hit& plain, const Hit& optimised) const
     {
@@ -144,7 +144,7 @@ private:
 SceneDifferences differences_of_lines(const Both& scenes, Method method)
 {
     const RaySet set = whole_lines(scenes.plain, method);
-    const Comparison comparison(scenes.plain.mesh);
+    const TetsComparison comparison(scenes.plain.mesh);
     const auto before = TracedImage(scenes.plain, method).given(set),
                after = TracedImage(scenes.optimised, method).given(set);
     SceneDifferences found;
@@ -173,7 +173,7 @@ TEST_P(RaysTetsOf, give_the_same_hits_in_fewer_steps)
     ASSERT_TRUE(scenes.plain.mesh == scenes.optimised.mesh);
     ASSERT_EQ(scenes.plain.domain.lines, scenes.optimised.domain.lines);
     ASSERT_FALSE(scenes.plain.tets == scenes.optimised.tets) << scenes.optimised.build.optimised.reason;
-    const Comparison comparison(scenes.plain.mesh);
+    const TetsComparison comparison(scenes.plain.mesh);
     Oracle oracle(scenes.plain.mesh, 2);
     for (const Method method : {Method::maria, Method::project}) {
         SCOPED_TRACE(name_of(method));

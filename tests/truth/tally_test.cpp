@@ -126,7 +126,7 @@ TEST(Tally, falsified_sums_are_caught)
             Sums moved = right;
             moved[tets.packed().packed_of_mesh[half_face_tet(across)]] += std::exchange(moved[tet], 0);
             EXPECT_TRUE(is_caught(moved, expected)) << tet;
-            EXPECT_FALSE(has_wrong_total(moved, answers)) << "the total alone does not show it";
+            EXPECT_FALSE(has_wrong_total(moved, answers)) << "the total does not show it";
         }
     EXPECT_TRUE(is_caught(Sums(right.size(), 0), expected));
 }

@@ -281,7 +281,7 @@ TEST_F(Verify, a_device_that_divides_inexactly_may_be_within_its_promise_and_no_
     EXPECT_EQ(conformity_text(off_by(2, inexact)), "within 2 ulp");
     EXPECT_EQ(status_of(off_by(2, inexact)), Status::ok);
     EXPECT_EQ(conformity_text(off_by(4, inexact)), "wrong: 2 rays");
-    EXPECT_EQ(conformity_text(off_by(1, {})), "wrong: 2 rays") << "a device whose division is correctly rounded";
+    EXPECT_EQ(conformity_text(off_by(1, {})), "wrong: 2 rays") << "this device's division is correctly rounded";
 }
 
 TEST_F(Verify, a_device_that_contracts_may_not_claim_to_be_exact)
