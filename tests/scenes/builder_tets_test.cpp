@@ -416,6 +416,12 @@ TEST_F(OptimisingBuilder, inserts_vertices_for_several_pieces_and_begins_with_mo
         const PreparedScene prepared = prepare_scene(asked, silence());
         EXPECT_EQ(prepared.surface.triangles.size(),
                   pieces * pieces * domain_surface(prepared.scene.domain).triangles.size());
+        EXPECT_FALSE(prepared.points.empty());
+        asked.repair = true;
+        asked.weld = 0x1p-20;
+        const PreparedScene welded = prepare_scene(asked, silence());
+        EXPECT_TRUE(welded.points.empty()) << "TetGen has failed before";
+        EXPECT_EQ(welded.surface.triangles.size(), domain_surface(welded.scene.domain).triangles.size());
         const Scene scene = expect_optimised(mesh, DomainKind::tight, "pY");
         EXPECT_EQ(scene.build.optimised.operations.back().done > 0, pieces > 1);
         EXPECT_EQ(scene.domain.divisions, 8U) << "that rays look up";
