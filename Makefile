@@ -27,7 +27,7 @@ help:
 	@echo "make format   format the sources"
 	@echo "make lint     check formatting, and the sources with clang-tidy"
 	@echo "make clean    remove build/"
-	@echo "JOBS=N        compile and test N at a time (here: $(JOBS))"
+	@echo "JOBS=N        compile and test N at a time (here: $(JOBS)); some sources need 2 GB of memory"
 
 build:
 	@scripts/install-packages build
@@ -90,7 +90,7 @@ test test-all:
 kernels:
 	@scripts/install-packages first
 	cmake --preset release -G Ninja -DBUILD_TESTING=OFF $(test_settings)
-	scripts/install-packages build test & cmake --build --preset release -j $(JOBS) --target tetrace_backends; \
+	exec 3<&0; scripts/install-packages build test <&3 & cmake --build --preset release -j $(JOBS) --target tetrace_backends; \
 	    status=$$?; wait; exit $$status
 
 sanitize:

@@ -52,7 +52,7 @@ using ImageOutcome = std::variant<ImageRecord, Skipped, Failed>;
 /// Throws nlohmann::json's exceptions or std::logic_error for input that samples_json() did not write, and for times
 /// that cannot be.
 [[nodiscard]] RowSamples samples_from(const nlohmann::json& json);
-/// Takes the samples out of JSON of samples_json() or outcome_json(), if it has any.
+/// Empties the samples in JSON of samples_json() or outcome_json(), if it has any; when they were taken stays.
 void drop_samples(nlohmann::json& record);
 /// Throws std::domain_error unless there are that many samples, each with possible times. with_intervals: whether each
 /// must say when it was taken.

@@ -40,7 +40,7 @@ inline constexpr RowPath ties{verification.key, "ties"}, wrong{verification.key,
 
 } // namespace tetrace::row_key
 
-/// The same for the fields of the group ratio_group.
+/// The same for the fields of the group ratio_group; no test looks for these.
 namespace tetrace::ratio_key {
 
 inline constexpr const char *row = "row", *ratio = "ratio", *low = "low", *high = "high", *reference = "reference";

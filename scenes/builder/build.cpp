@@ -330,8 +330,9 @@ PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& ta
     prepared.limits.closed_too = has_own;
     const bool has_pieces = prepared.limits.effort > 0 && count_pieces(prepared.facets()) > 1;
     prepared.limits.several_pieces = has_pieces || has_own;
-    const bool is_welded = options.weld > 0; // TetGen has failed often before, and gets the least that it can do with
-    if (has_pieces && !is_welded)            // more vertices on the sides to begin with
+    const bool is_welded =
+        options.repair && options.weld > 0; // TetGen has failed before: the least that it can do with
+    if (has_pieces && !is_welded)           // more vertices on the sides to begin with
         prepared.surface = domain_surface(make_domain(scene.mesh, options.domain, 2 * options.divisions));
     if (const std::uint32_t squares = options.order / 100; squares > 0)
         prepared.surface = domain_surface(make_domain(scene.mesh, options.domain, squares));

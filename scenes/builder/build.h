@@ -64,8 +64,9 @@ struct BuilderTalk {
 /// Everything that TetGen needs; scene.tets is empty.
 struct PreparedScene {
     Scene scene;
-    TriangleMesh surface;       ///< the domain's
-    std::vector<Float3> points; ///< more vertices for TetGen; if switches lack q and O0 and tets are for rays
+    TriangleMesh surface; ///< the domain's
+    std::vector<Float3>
+        points; ///< more vertices for TetGen; if tets are for rays, switches lack q and O0, and nothing is welded
     OptimiserLimits limits;
     Stopwatch watch;  ///< since its mesh was read
     OwnTets own = {}; ///< of a file of tets; they stay as they are, unless limits.closed_too

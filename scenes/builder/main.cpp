@@ -146,7 +146,7 @@ std::optional<int> parse(int argc, char** argv, BuilderOptions& options)
     const std::string cdt(name_of(TetsKind::cdt)), rays(name_of(TetsKind::rays));
     app.add_option("--tets", tets,
                    "cdt: as TetGen makes them; rays: then optimised, so that rays cross fewer faces, from a graded "
-                   "set of points if the switches lack q; default: cdt")
+                   "set of points unless the switches have q or O0, or --weld is given; default: cdt")
         ->check(CLI::IsMember({cdt, rays}).description(""))
         ->type_name(cdt + "|" + rays);
     app.add_option("--effort", options.effort, "of the optimiser, 0 (none, and no more points) to 3; default: 2")

@@ -54,13 +54,25 @@ bool is_looked_up(const std::string& source, std::size_t begin, std::size_t end)
            (after.starts_with(")") || after.starts_with(","));
 }
 
+/// Whether a text in quotes is in a list of keys: of an array, as in keys[] = {"a", "b"}, or of a loop, as in
+/// for (const char* key : {"a", "b"}).
+bool is_in_list(const std::string& source, std::size_t begin)
+{
+    const std::size_t brace = source.find_last_of("{}();", begin);
+    if (brace == std::string::npos || source[brace] != '{') return false;
+    const std::size_t before = source.find_last_not_of(" \n", brace - 1);
+    if (before == std::string::npos) return false;
+    const std::string head = source.substr(0, before + 1);
+    return head.ends_with(" :") || head.ends_with("[] =");
+}
+
 KeyNames keys_looked_up(const std::string& source, const KeyNames& keys)
 {
     KeyNames found;
     for (const std::string& key : keys) {
         const std::string quoted = "\"" + key + "\"";
         for (std::size_t at = source.find(quoted); at != std::string::npos; at = source.find(quoted, at + 1))
-            if (is_looked_up(source, at, at + quoted.size() - 1)) found.insert(key);
+            if (is_looked_up(source, at, at + quoted.size() - 1) || is_in_list(source, at)) found.insert(key);
     }
     return found;
 }
@@ -92,7 +104,9 @@ TEST(FieldKeys, are_found_wherever_a_source_looks_them_up)
     for (const std::string source :
          {R"(row.find("mrays_per_s"))", R"(rates->at("mrays_per_s").number())", R"(read_member(to, row,
         "mrays_per_s");)",
-          R"(row["mrays_per_s"].get<double>())", R"(if (row["mrays_per_s"] == 1))", R"(row.value("mrays_per_s", 0.0))"})
+          R"(row["mrays_per_s"].get<double>())", R"(if (row["mrays_per_s"] == 1))", R"(row.value("mrays_per_s", 0.0))",
+          R"(const char* const shared[] = {"name", "mrays_per_s", "status"};)",
+          R"(for (const char* key : {"name", "mrays_per_s"}))"})
         EXPECT_EQ(keys_looked_up(source, keys), KeyNames{"mrays_per_s"}) << source;
     for (const std::string source : {R"(object["mrays_per_s"] = 1;)", R"(Column{"mrays_per_s", "Mrays/s"})",
                                      R"(row.find(row_key::mrays_per_s))", R"(row.find("name"))"})

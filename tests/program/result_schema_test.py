@@ -170,6 +170,7 @@ class ResultSchema(unittest.TestCase):
         cls.all = {**checks, "bench": cls.bench, "check": cls.check, "compare": cls.compare, "several": several, "reproduce": reproduced(cls.bench),
                    "table5": fresh(["reproduce", "table5", "--searches", "20x8", "--samples", "3", "--sample-time", "0", "--method", "maria",
                                     "--layout", "tet80", "--backend", "openmp", "--threads", "1"]),
+                   # Without OpenCL, whose drivers take long to compile these: its entries have the same form.
                    "defects": fresh(["check", "--defects", "--stress", "--backend", "openmp,vulkan,cuda,cuda-host"], (0, 1)),
                    "variants": fresh(["check", "--variants", "1", "--scene", "cubes", "--resolution", "3", "--size", "8", "--method", "maria", "--layout", "tet80",
                                      "--backend", "vulkan"], (0, 3)),
