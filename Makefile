@@ -88,8 +88,8 @@ test test-all:
 
 # The kernels are compiled while the packages that they do not need arrive.
 kernels:
-	@scripts/install-packages first
-	cmake --preset release -G Ninja -DBUILD_TESTING=OFF $(test_settings)
+	@scripts/install-packages kernels
+	cmake --preset release -G Ninja --log-level=ERROR -DBUILD_TESTING=OFF $(test_settings)
 	exec 3<&0; scripts/install-packages build test <&3 & cmake --build --preset release -j $(JOBS) --target tetrace_backends; \
 	    status=$$?; wait; exit $$status
 
