@@ -182,8 +182,8 @@ Error failure(const std::string& doing, const Ending& ending, const Report& repo
             label, looked));
 }
 
-/// The meshes that runs of the builder leave for those after them, beside the scene that is made, one for each
-/// tolerance.
+/// The meshes that a run of the builder leaves for the next ones: a file for each tolerance, in the folder of the
+/// scene.
 class PreparedMeshes {
 public:
     explicit PreparedMeshes(fs::path out) : out_(std::move(out)) {}

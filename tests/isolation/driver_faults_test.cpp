@@ -2,6 +2,7 @@
 #include "tests/support/program_fixture.h"
 
 #include <csignal>
+#include <iterator>
 #include <regex>
 
 using namespace tetrace;
@@ -159,8 +160,10 @@ TEST_F(DriverFaults, hang_of_a_stressor_is_its_rows_error_with_its_launch_and_th
     const std::string text = unwrapped(ended.out);
     EXPECT_TRUE(contains(text, "gave no answer for 15 s, and was ended, while running the reduced kernel")) << text;
     EXPECT_TRUE(std::regex_search(text, std::regex("\\(dump --defect [a-z_]+:1000000:128\\)"))) << text;
-    EXPECT_EQ(text.find("gave no answer"), text.rfind("gave no answer")) << "the others run: " << text;
-    EXPECT_TRUE(contains(text, " errors")) << text; // also those of kernels that this driver does not compile
+    // PoCL 6.0 does not compile one of these kernels, and crashes in another.
+    const std::regex of_its_own("compiling defects with|was ended by signal");
+    const auto own = std::distance(std::sregex_iterator(text.begin(), text.end(), of_its_own), std::sregex_iterator());
+    EXPECT_TRUE(contains(text, " " + std::to_string(1 + own) + " errors")) << text;
 }
 
 TEST_F(DriverFaults, version_of_the_future_is_used_and_one_that_is_no_text_is_no_crash)
