@@ -86,7 +86,7 @@ test test-all:
 	ctest --preset release -j $$(($(JOBS) + 1)) $(if $(filter test,$@),-LE '^campaign$$') --output-log build/release/test.log; \
 	    status=$$?; echo "== release"; scripts/test-summary build/release; exit $$status
 
-# The kernels are compiled while the packages that they do not need arrive.
+# The kernels are compiled while the packages that they do not need arrive. By <&3, sudo can ask for a password.
 kernels:
 	@scripts/install-packages kernels
 	cmake --preset release -G Ninja --log-level=ERROR -DBUILD_TESTING=OFF $(test_settings)
